@@ -10,7 +10,8 @@ from pathlib import Path
 
 from teachpath.errors import UnusableInput
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.store.recordings import RecordingFile, RecordingHeader
+from teachpath.io.store.recordings import RecordingFile
+from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine

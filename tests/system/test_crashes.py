@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from teachpath.io.store.recordings import salvage
+from teachpath.io.store.salvage import salvage
 from teachpath_client import HandReading, Link, Tracker
 from teachpath_client.synthetic import experiment_1
 from tests.system.processes import Service, run

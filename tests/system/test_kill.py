@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from teachpath.io.store.recordings import salvage
+from teachpath.io.store.salvage import salvage
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene

@@ -15,7 +15,7 @@ from teachpath.io.readers.contract import ReadOptions, Track
 from teachpath.io.readers.registry import read_motions, recognized
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recording_facts import read_facts_stream
-from teachpath.io.store.recordings import salvage_stream
+from teachpath.io.store.salvage import salvage_stream
 from teachpath.offline.track_samples import MotionMarks, PhaseMarks, samples_of
 from teachpath.recorder.annotations import MARKS
 from teachpath.recording.settings import RecordingSettings

@@ -39,7 +39,7 @@ class StoredDemonstrations:
         """
         return {
             row.id: object_trajectory(
-                self.recordings.samples(row.recording, row.digest),
+                self.recordings.columns(row.recording, row.digest),
                 TransportSpan(*row.transport),
                 row.calibration,
                 pose.position if (pose := row.object_pose or self.object_pose) else None,

@@ -12,7 +12,7 @@ from teachpath.errors import TeachpathError
 from teachpath.io.documents import decode_demonstration
 from teachpath.io.store.integrity import find_contradiction, with_new_summary
 from teachpath.io.store.recording_facts import read_facts_stream
-from teachpath.io.store.recordings import RecordingHeader, salvage_stream
+from teachpath.io.store.salvage import RecordingHeader, salvage_stream
 from teachpath.records import Demonstration, RecordingDigest, Sample
 
 

@@ -6,7 +6,8 @@ import shutil
 from pathlib import Path
 from typing import Final
 
-from teachpath.io.store.recordings import RECORDINGS, RecordingHeader
+from teachpath.io.store.recordings import RECORDINGS
+from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.import_job import derived_ids

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from teachpath.errors import UnusableInput
-from teachpath.io.store.recordings import RecordingHeader
+from teachpath.io.store.salvage import RecordingHeader
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.take import random_id
 from teachpath.records import Calibration, ObjectPose, RecordingRequest, Routine, Scene

@@ -38,7 +38,7 @@ def read_trajectory(recordings: Recordings, demonstration: Demonstration, carrie
         UnusableRecording: its recording is damaged.
     """
     return object_trajectory(
-        recordings.samples(demonstration.recording, demonstration.digest),
+        recordings.columns(demonstration.recording, demonstration.digest),
         TransportSpan(*demonstration.transport),
         demonstration.calibration,
         carried,
@@ -69,7 +69,7 @@ def reassess_recording(
         carried: start of the object's centre [m, world], or None.
         object_at_grasp: the object lies where the hand grasps.
     """
-    samples = recordings.samples(before.recording, before.digest)
+    samples = recordings.columns(before.recording, before.digest)
     changes = reassess(before, after, samples, settings)
     span, left_out = TransportSpan(*after.transport), changes["left_out"]
     if object_at_grasp and before.object_pose is not None:

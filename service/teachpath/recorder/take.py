@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from teachpath.errors import StorageUnavailable, UnusableRecording
-from teachpath.io.store.recordings import RecordingFile, RecordingHeader
+from teachpath.io.store.recordings import RecordingFile
+from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.sample_rows import SampleRows
 from teachpath.io.store.store import Store
 from teachpath.recorder.take_completion import SegmentedTake, complete_take
@@ -127,7 +128,7 @@ class Take:
             if self._file is None:
                 raise UnusableRecording(f"a demonstration was lost: {self.fault}")
             identity = {"id": self._id, "task": self._header.task, "source": self._header.tracker}
-            samples, calibration = self.samples[:], self._header.calibration
+            samples, calibration = self.samples.arrays(), self._header.calibration
             take = SegmentedTake(samples, cut, statistics, calibration, carried, object_pose, fault)
             return TakeOutcome(complete_take(self._store, self._settings, self._file, take, identity))
         except UnusableRecording as error:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,7 +14,7 @@ from teachpath.io.store.recording_facts import facts_of
 from teachpath.io.store.recordings import RecordingFile
 from teachpath.io.store.store import Store
 from teachpath.recording.advice import ending_advice
-from teachpath.recording.demonstration import carried_numbers, is_in_order, object_trajectory, to_world, usable_samples
+from teachpath.recording.demonstration import carried_numbers, object_trajectory, place_of, to_world, usable_samples
 from teachpath.recording.grip_flaps import find_grip_flaps
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics, tell_arrivals
 from teachpath.recording.phases import TransportSpan
@@ -28,6 +27,7 @@ from teachpath.records import (
     Demonstration,
     ObjectPose,
     Sample,
+    SampleColumns,
     StreamStatistics,
     Trajectory,
     Vector,
@@ -70,7 +70,7 @@ def complete_take(
         UnusableRecording: the transport phase is too short; nothing was finished or stored.
         OSError: the file cannot be finished.
     """
-    cut = take.cut
+    take, cut = replace(take, samples=SampleColumns.of(take.samples)), take.cut
     if cut.release - cut.grasp < settings.shortest_transport:
         raise UnusableRecording(
             f"a transport phase of {cut.release - cut.grasp} samples is under the least of "
@@ -112,14 +112,15 @@ def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tupl
     """
     ordered, foreign = _own_samples(take, settings)
     grasp, after = carried_numbers(take.samples, take.cut)
-    span = bisect_left(ordered, grasp, key=_number), bisect_left(ordered, after, key=_number)
+    span = place_of(ordered, grasp), place_of(ordered, after)
     if span[0] == span[1]:
         return take.statistics, tuple(sorted(foreign))
-    carried = ordered[slice(*span)]
+    carried = ordered[span[0] : span[1]]
     repeated = find_repeated_readings(ordered, *span)
-    stale = set(repeated.indices)  # without them, the reading after one is a step over the time it took, and no leap
-    measured = [s for k, s in enumerate(carried, span[0]) if k not in stale]
-    found = find_outliers(measured, to_world(take.calibration, np.array([s.position for s in measured])), settings)
+    stale = np.array(repeated.indices, np.int64)
+    # Without them, the reading after one is a step over the time it took, and no leap.
+    measured = carried.select(~np.isin(np.arange(*span), stale))
+    found = find_outliers(measured, to_world(take.calibration, measured.position), settings)
     flaps = find_grip_flaps(take.samples, take.cut, settings)
     statistics = replace(
         take.statistics,
@@ -132,21 +133,22 @@ def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tupl
         reversals=found.reversals,
         repeated=len(repeated.indices),
         longest_freeze_ns=round(1e9 * repeated.longest),
-        freeze_at_ns=ordered[repeated.longest_at].device_ns - carried[0].device_ns if repeated.indices else 0,
+        freeze_at_ns=int(ordered.device_ns[repeated.longest_at] - carried.device_ns[0]) if repeated.indices else 0,
         measured_rate=repeated.measured_rate,
     )
-    left_out = {*found.outliers, *(ordered[k].sequence for k in repeated.indices), *foreign}
+    left_out = {*found.outliers, *ordered.sequence[stale].tolist(), *foreign}
     return statistics, tuple(sorted(left_out))
 
 
-def _own_samples(take: SegmentedTake, settings: RecordingSettings) -> tuple[list[Sample], set[int]]:
+def _own_samples(take: SegmentedTake, settings: RecordingSettings) -> tuple[SampleColumns, set[int]]:
     """Return the usable samples of the take's own source in the order of their numbers, and the numbers of others."""
-    usable = usable_samples(take.samples)
-    if is_in_order(take.samples):
+    columns = SampleColumns.of(take.samples)
+    usable = usable_samples(columns)
+    if columns.is_in_order:
         return usable, set()
-    arrivals = tell_arrivals(take.samples, take.statistics, settings)
-    own = {s.sequence for s, arrival in zip(take.samples, arrivals, strict=True) if arrival.belongs}
-    return [s for s in usable if s.sequence in own], {s.sequence for s in take.samples} - own
+    arrivals = tell_arrivals(columns, take.statistics, settings)
+    own = columns.sequence[[arrival.belongs for arrival in arrivals]]
+    return usable.select(np.isin(usable.sequence, own)), set(columns.sequence.tolist()) - set(own.tolist())
 
 
 def reassess(
@@ -159,7 +161,7 @@ def reassess(
         after: as it will be.
         samples: of its recording.
     """
-    cut = TransportSpan(*after.transport)
+    samples, cut = SampleColumns.of(samples), TransportSpan(*after.transport)
     take = SegmentedTake(samples, cut, before.statistics, after.calibration, None)
     statistics, left_out = add_content_faults(take, settings)
     quality = reassess_quality(
@@ -190,7 +192,3 @@ def _assess(statistics: PhaseStatistics, take: SegmentedTake, settings: Recordin
     verdict = Verdict.REJECT if rejected else Verdict.REPAIRED
     advice = quality.advice if quality.verdict == Verdict.REJECT else ending_advice(take.fault, rejected=rejected)
     return QualityReport(verdict, (take.fault, *quality.reasons), advice)
-
-
-def _number(sample: Sample) -> int:
-    return sample.sequence

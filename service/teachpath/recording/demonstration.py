@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from itertools import pairwise
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
 from teachpath.recording.phases import TransportSpan
-from teachpath.records import Array, Calibration, Pose, Quaternion, Sample, Trajectory, Vector
+from teachpath.records import Array, Calibration, Pose, Quaternion, Sample, SampleColumns, Trajectory, Vector
 
 NO_END = 2**64  # over every number
 
@@ -41,20 +40,16 @@ def point_to_world(calibration: Calibration) -> Callable[[Vector], Vector]:
     return mapped
 
 
-def is_in_order(samples: Sequence[Sample]) -> bool:
-    """Tell whether samples came in the order of their numbers, each once, as nearly all takes do."""
-    return all(one.sequence < next_.sequence for one, next_ in pairwise(samples))
-
-
-def usable_samples(samples: Sequence[Sample]) -> list[Sample]:
+def usable_samples(samples: Sequence[Sample]) -> SampleColumns:
     """Return the tracked samples in the order of their numbers, each once."""
-    if is_in_order(samples):
-        return [sample for sample in samples if sample.tracked]
-    used: dict[int, Sample] = {}
-    for sample in samples:
-        if sample.tracked:
-            used.setdefault(sample.sequence, sample)
-    return [used[k] for k in sorted(used)]
+    columns = SampleColumns.of(samples)
+    tracked = columns.select(columns.tracked)
+    return tracked if columns.is_in_order else tracked.select(np.unique(tracked.sequence, return_index=True)[1])
+
+
+def place_of(columns: SampleColumns, number: int) -> int:
+    """Return the index of the first sample, of those in the order of their numbers, that has at least this number."""
+    return len(columns) if number >= NO_END else int(np.searchsorted(columns.sequence, np.uint64(number)))
 
 
 def carried_numbers(samples: Sequence[Sample], cut: TransportSpan) -> tuple[int, int]:
@@ -66,10 +61,11 @@ def carried_numbers(samples: Sequence[Sample], cut: TransportSpan) -> tuple[int,
     return samples[cut.grasp].sequence, after
 
 
-def transport_samples(samples: Sequence[Sample], cut: TransportSpan) -> list[Sample]:
+def transport_samples(samples: Sequence[Sample], cut: TransportSpan) -> SampleColumns:
     """Return the tracked samples of the transport phase in the order of their numbers, each once."""
     grasp, after = carried_numbers(samples, cut)
-    return [sample for sample in usable_samples(samples) if grasp <= sample.sequence < after]
+    usable = usable_samples(samples)
+    return usable[place_of(usable, grasp) : place_of(usable, after)]
 
 
 def object_trajectory(
@@ -96,20 +92,20 @@ def object_trajectory(
     Raises:
         UnusableRecording: fewer than 2 usable samples.
     """
-    passed_over = frozenset(left_out)  # a frozen tracker of a long take leaves out tens of thousands
-    ordered = _forward_in_time([s for s in transport_samples(samples, cut) if s.sequence not in passed_over])
+    carrying = transport_samples(samples, cut)
+    passed_over = np.isin(carrying.sequence, np.fromiter(left_out, np.uint64, len(left_out)))
+    ordered = _forward_in_time(carrying.select(~passed_over))
     if len(ordered) < 2:
         raise UnusableRecording(
             f"only {len(ordered)} usable samples between grasp and release; is the tracker in view of its source?"
         )
-    times = np.array([s.device_ns - ordered[0].device_ns for s in ordered]) * 1e-9
-    hand = to_world(calibration, np.array([s.position for s in ordered]))
-    measured = [s.orientation for s in ordered]
-    if any(q is None for q in measured):
+    times = (ordered.device_ns - ordered.device_ns[0]) * 1e-9
+    hand = to_world(calibration, ordered.position)
+    if not ordered.orientation.any(axis=1).all():
         offset = np.zeros(3) if carried is None else np.array(carried) - hand[0]
         return Trajectory(times, hand + offset, None)
     world = Rotation.from_quat(calibration.rotation, scalar_first=True)
-    turned = world * Rotation.from_quat(np.array(measured, dtype=np.float64), scalar_first=True)
+    turned = world * Rotation.from_quat(ordered.orientation, scalar_first=True)
     if carried is None:
         return Trajectory(times, hand, _continuous(turned.as_quat(scalar_first=True)))
     since_grasp = turned * turned[0].inv()
@@ -135,12 +131,11 @@ def object_pose(grasped: Sample, now: Sample, calibration: Calibration, carried:
     return (x, y, z), (w, i, j, k)
 
 
-def _forward_in_time(samples: list[Sample]) -> list[Sample]:
-    kept: list[Sample] = []
-    for sample in samples:
-        if not kept or sample.device_ns > kept[-1].device_ns:
-            kept.append(sample)
-    return kept
+def _forward_in_time(samples: SampleColumns) -> SampleColumns:
+    """Return the samples that are later than all before, by the device's clock."""
+    newest = np.maximum.accumulate(samples.device_ns)
+    later = np.concatenate([[True], samples.device_ns[1:] > newest[:-1]])[: len(samples)]
+    return samples.select(later)
 
 
 def _continuous(quaternions: Array) -> Array:

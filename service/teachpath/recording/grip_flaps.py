@@ -6,9 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+
 from teachpath.recording.phases import TransportSpan, hand_closure
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Sample
+from teachpath.records import Array, Sample, SampleColumns
+from teachpath_proto.sample_rules import GRASP_BUTTON
+
+ROUNDING = 1e-9  # a closure so near to a limit is summed as `hand_closure` sums it
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +42,12 @@ def find_grip_flaps(samples: Sequence[Sample], cut: TransportSpan, settings: Rec
         cut: their transport phase.
         settings: limits of the recording.
     """
-    begin_ns = samples[cut.grasp].device_ns
-    changes = _changes(samples[cut.grasp :], settings)
+    columns = SampleColumns.of(samples)
+    begin_ns = int(columns.device_ns[cut.grasp])
+    changes = _changes(columns[cut.grasp :], settings)
     limit_ns = settings.shortest_grip * 1e9
     short = [(a, b) for a, b in pairwise(changes) if 0 <= b - a < limit_ns]
-    let_go_ns = samples[cut.release].device_ns if cut.release < len(samples) else -1
+    let_go_ns = int(columns.device_ns[cut.release]) if cut.release < len(columns) else -1
     return GripFlaps(
         count=len(short),
         first_at_ns=short[0][0] - begin_ns if short else 0,
@@ -49,11 +55,19 @@ def find_grip_flaps(samples: Sequence[Sample], cut: TransportSpan, settings: Rec
     )
 
 
-def _changes(samples: Sequence[Sample], settings: RecordingSettings) -> list[int]:
+def _changes(samples: SampleColumns, settings: RecordingSettings) -> list[int]:
     """Return when the hand closed or opened [ns of the device's clock]; it is closed at the first sample."""
-    changes, closed = [], True
-    for sample in samples:
-        if (hand_closure(sample) > (settings.open_at if closed else settings.close_at)) != closed:
-            closed = not closed
-            changes.append(sample.device_ns)
-    return changes
+    closure = _closures(samples, settings)
+    decided = np.flatnonzero((closure > settings.close_at) | (closure <= settings.open_at))
+    closed = np.concatenate([[True], closure[decided] > settings.close_at])
+    return [int(ns) for ns in samples.device_ns[decided[closed[1:] != closed[:-1]]].tolist()]
+
+
+def _closures(samples: SampleColumns, settings: RecordingSettings) -> Array:
+    """Return `hand_closure` of each sample (n,); next to a limit to the last bit."""
+    closure = samples.flexions.sum(axis=1, dtype=np.float64) / np.maximum(samples.flexion_count, 1)
+    closure[samples.buttons & GRASP_BUTTON > 0] = 1.0
+    limits = np.array([settings.open_at, settings.close_at])
+    for k in np.flatnonzero((np.abs(closure[:, None] - limits) <= ROUNDING).any(axis=1)).tolist():
+        closure[k] = hand_closure(samples[k])
+    return np.asarray(closure)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
+import numpy as np
+
 from teachpath.recording.arrival import Arrival
-from teachpath.recording.demonstration import NO_END, carried_numbers, is_in_order
+from teachpath.recording.demonstration import NO_END, carried_numbers, place_of
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.steady_counts import count_steady
 from teachpath.recording.stream_statistics import StreamCounter
-from teachpath.records import Sample, StreamStatistics
+from teachpath.records import Sample, SampleColumns, StreamStatistics
 
 COUNTED_AS: Final = {
     Arrival.REORDERED: "reordered",
@@ -56,13 +57,15 @@ def phase_statistics(
         cut: its transport phase.
         whole: the statistics of the take.
     """
-    placed, irregular = samples, []
-    if not is_in_order(samples):
-        came = list(zip(range(len(samples)), samples, tell_arrivals(samples, whole, settings), strict=True))
-        placed = sorted((sample for _, sample, arrival in came if arrival.belongs), key=_number)
-        irregular = [each for each in came if each[2] is not Arrival.IN_ORDER]
+    columns = placed = SampleColumns.of(samples)
+    irregular = []
+    if not columns.is_in_order:
+        arrivals = tell_arrivals(columns, whole, settings)
+        belongs = np.flatnonzero([arrival.belongs for arrival in arrivals])
+        placed = columns.select(belongs[np.argsort(columns.sequence[belongs], kind="stable")])
+        irregular = [(k, columns[k], how) for k, how in enumerate(arrivals) if how is not Arrival.IN_ORDER]
     grasp, after = carried_numbers(samples, cut)
-    end = placed[min(bisect_left(placed, after, key=_number), len(placed) - 1)].sequence if after < NO_END else NO_END
+    end = int(placed.sequence[min(place_of(placed, after), len(placed) - 1)]) if after < NO_END else NO_END
     phases = _phases(placed, (grasp, end + 1), whole, settings)
     unplaced: list[dict[str, Any]] = [dict.fromkeys(COUNTED_AS.values(), 0) for _ in phases]
     for index, sample, arrival in irregular:
@@ -98,10 +101,11 @@ def tell_arrivals(samples: Sequence[Sample], whole: StreamStatistics, settings: 
         samples: in the order received.
         whole: the statistics of the take.
     """
-    if is_in_order(samples):
-        return [Arrival.IN_ORDER] * len(samples)
+    columns = SampleColumns.of(samples)
+    if columns.is_in_order:
+        return [Arrival.IN_ORDER] * len(columns)
     counter = _counter(whole, settings)
-    return [counter.observe(sample) for sample in samples]
+    return [counter.observe(sample) for sample in columns]
 
 
 def _counter(whole: StreamStatistics, settings: RecordingSettings) -> StreamCounter:
@@ -113,7 +117,7 @@ def _counter(whole: StreamStatistics, settings: RecordingSettings) -> StreamCoun
 
 
 def _phases(
-    placed: Sequence[Sample], borders: tuple[int, int], whole: StreamStatistics, settings: RecordingSettings
+    placed: SampleColumns, borders: tuple[int, int], whole: StreamStatistics, settings: RecordingSettings
 ) -> list[StreamStatistics]:
     """Return the statistics of samples in the order of their numbers, up to each border and after the last."""
     if not whole.refused_numbers:
@@ -142,7 +146,3 @@ def _without(explained: int, *phases: StreamStatistics) -> Iterator[StreamStatis
 def _overlap(stretches: Sequence[tuple[int, int]], first: int, last: int) -> int:
     """Return how many numbers of some stretches lie from `first` to `last`."""
     return sum(max(min(b, last) - max(a, first) + 1, 0) for a, b in stretches)
-
-
-def _number(sample: Sample) -> int:
-    return sample.sequence

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Array, Sample
+from teachpath.records import Array, Sample, SampleColumns
 
 HALF_WINDOW = 3  # neighbours on each side
 OUTLIER_THRESHOLD = 4.0  # standard deviations of the neighbours
@@ -45,7 +45,8 @@ def find_outliers(samples: Sequence[Sample], positions: Array, settings: Recordi
     away = np.linalg.norm(positions - _medians(positions), axis=1)
     outliers = _exceeds_scatter(away, settings.largest_jump)
     stayed = positions[~outliers]
-    times = np.array([s.device_ns - samples[0].device_ns for s in samples])[~outliers] * 1e-9
+    columns = SampleColumns.of(samples)
+    times = (columns.device_ns - columns.device_ns[0])[~outliers] * 1e-9
     steps = np.linalg.norm(np.diff(stayed, axis=0), axis=1)
     dt = np.diff(times)
     if len(steps) <= 2 * HALF_WINDOW or np.any(dt <= 0):
@@ -53,7 +54,7 @@ def find_outliers(samples: Sequence[Sample], positions: Array, settings: Recordi
     else:
         speed = _medians((steps / dt)[:, None])[:, 0]
         level_shifts = int(np.count_nonzero(_exceeds_scatter(steps - speed * dt, settings.largest_jump)))
-    numbers = tuple(s.sequence for s, bad in zip(samples, outliers, strict=True) if bad)
+    numbers = tuple(columns.sequence[outliers].tolist())
     return PositionOutliers(numbers, level_shifts, out_of_workspace, _count_reversals(stayed, dt, settings))
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from teachpath.records import Array, Sample
+from teachpath.records import Array, Sample, SampleColumns
 
 NEIGHBOURS = 4  # steps before and after that tell how fast the hand was
 FREEZE_LENGTH = 3  # repeats in a row; fewer are judged by the motion on both sides alone
@@ -52,10 +52,10 @@ def find_repeated_readings(samples: Sequence[Sample], begin: int, end: int) -> R
         begin: first index of the span.
         end: first index after it.
     """
-    times = np.array([s.device_ns - samples[0].device_ns for s in samples]) * 1e-9
-    turns = [s.orientation for s in samples]
-    orientations = None if any(q is None for q in turns) else np.array(turns, dtype=np.float64)
-    return find_repeated(times, np.array([s.position for s in samples]), orientations, begin, end)
+    columns = SampleColumns.of(samples)
+    times = (columns.device_ns - columns.device_ns[0]) * 1e-9
+    measured = columns.orientation.any(axis=1).all()
+    return find_repeated(times, columns.position, columns.orientation if measured else None, begin, end)
 
 
 def find_repeated(times: Array, positions: Array, orientations: Array | None, begin: int, end: int) -> RepeatedReadings:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
+from teachpath.recording.demonstration import place_of
 from teachpath.recording.stream_statistics import MAX_SEQUENCE_JUMP
-from teachpath.records import Sample, StreamStatistics
+from teachpath.records import Sample, SampleColumns, StreamStatistics
 
 
 def count_steady(
@@ -28,23 +28,22 @@ def count_steady(
     Returns:
         The counts of each part, with its longest gap; None when the stream is not steady.
     """
-    count = len(samples)
-    passed_over, gaps_ns, untracked = (np.zeros(count, dtype=np.int64) for _ in range(3))
-    steps = np.diff(np.fromiter((s.sequence for s in samples), np.uint64, count))
-    gaps_ns[1:] = np.diff(np.fromiter((s.device_ns for s in samples), np.int64, count))
+    columns = SampleColumns.of(samples)
+    passed_over, gaps_ns = (np.zeros(len(columns), dtype=np.int64) for _ in range(2))
+    steps = np.diff(columns.sequence)
+    gaps_ns[1:] = np.diff(columns.device_ns)
     rising = np.all((steps >= 1) & (steps <= MAX_SEQUENCE_JUMP))
     if not (rising and np.all((gaps_ns[1:] > 0) & (gaps_ns[1:] <= round(largest_clock_step * 1e9)))):
         return None
     passed_over[1:] = steps - 1
-    untracked[:] = [not s.tracked for s in samples]
-    ends = [bisect_left(samples, border, key=lambda s: s.sequence) for border in borders]
+    ends = [place_of(columns, border) for border in borders]
     return [
         StreamStatistics(
             received=end - begin,
             lost=int(passed_over[begin:end].sum()),
             gaps=int(np.count_nonzero(passed_over[begin:end])),
-            untracked=int(untracked[begin:end].sum()),
+            untracked=int(np.count_nonzero(~columns.tracked[begin:end])),
             longest_gap_ns=int(gaps_ns[begin:end].max(initial=0)),
         )
-        for begin, end in pairwise([0, *ends, count])
+        for begin, end in pairwise([0, *ends, len(columns)])
     ]

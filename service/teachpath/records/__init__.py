@@ -66,6 +66,7 @@ from teachpath.records.recording import (
     StopRequest,
     TaskReference,
 )
+from teachpath.records.sample_columns import SampleColumns
 from teachpath.records.sampled_motion import SampledMotion
 from teachpath.records.scene_versions import SavedScene, SceneVersion
 from teachpath.records.serial_arms import (
@@ -136,6 +137,7 @@ __all__ = [
     "Routine",
     "RunSummary",
     "Sample",
+    "SampleColumns",
     "SampledMotion",
     "SavedScene",
     "Scene",

@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teachpath.io.store.recordings import RecordingHeader, Recordings
+from teachpath.io.store.recordings import Recordings
+from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.wire import decode_sample
 from teachpath.records import Calibration, Sample
 from teachpath_client.errors import ClientError

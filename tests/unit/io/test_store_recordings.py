@@ -18,7 +18,8 @@ from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io.documents import encode
 from teachpath.io.store.mcap_records import read_records
 from teachpath.io.store.recording_facts import read_facts
-from teachpath.io.store.recordings import RecordingFile, RecordingHeader, Recordings, salvage
+from teachpath.io.store.recordings import RecordingFile, Recordings
+from teachpath.io.store.salvage import RecordingHeader, salvage
 from teachpath.io.wire import encode_sample
 from teachpath.recording.demonstration import to_world
 from teachpath.records import Calibration, Sample

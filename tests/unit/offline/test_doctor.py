@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from teachpath.errors import Conflict
-from teachpath.io.store.recordings import RecordingHeader
+from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine

@@ -16,7 +16,8 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.documents import to_document
 from teachpath.io.store.integrity import find_contradiction
 from teachpath.io.store.recording_facts import amended, read_facts
-from teachpath.io.store.recordings import RecordingHeader, Recordings, salvage
+from teachpath.io.store.recordings import Recordings
+from teachpath.io.store.salvage import RecordingHeader, salvage
 from teachpath.offline.exporting import export_demonstrations
 from teachpath.offline.findings import ExitCode, FaultKind, exit_code
 from teachpath.offline.learning_job import StoredDemonstrations

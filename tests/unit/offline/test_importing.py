@@ -7,7 +7,7 @@ import pytest
 
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.store.recordings import RecordingHeader
+from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.file_samples import Source

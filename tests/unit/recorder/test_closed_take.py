@@ -6,7 +6,7 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 
-from teachpath.io.store.recordings import salvage
+from teachpath.io.store.salvage import salvage
 from teachpath.io.store.store import Store
 from teachpath.recorder.closed_take import TakeQueue
 from teachpath.recorder.recording_setup import RecordingSetup

@@ -9,7 +9,8 @@ from typing import Any, BinaryIO
 
 import pytest
 
-from teachpath.io.store.recordings import open_new, salvage
+from teachpath.io.store.recordings import open_new
+from teachpath.io.store.salvage import salvage
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from tests.unit.recorder.recorders import Bench

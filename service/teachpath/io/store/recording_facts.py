@@ -14,7 +14,8 @@ from teachpath.io import documents
 from teachpath.io.store.integrity import add_integrity
 from teachpath.io.store.mcap_file import McapFile
 from teachpath.io.store.mcap_records import read_records
-from teachpath.io.store.recordings import FACTS, salvage_stream
+from teachpath.io.store.recordings import FACTS
+from teachpath.io.store.salvage import salvage_columns
 from teachpath.records import Demonstration
 
 
@@ -39,7 +40,7 @@ def amended(content: bytes, demonstration: Demonstration) -> bytes:
     stream = io.BytesIO()
     file = McapFile.reopen(stream, content)
     file.add_metadata(FACTS, facts)
-    numbers = [sample.sequence for sample in salvage_stream(io.BytesIO(content))[1]]
+    numbers = salvage_columns(io.BytesIO(content))[1].sequence.tolist()
     add_integrity(file, len(numbers), min(numbers, default=0), max(numbers, default=0))
     file.finish()
     return stream.getvalue()

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple, overload
 
-from teachpath.records import Quaternion, Sample, Vector
+from teachpath.records import Quaternion, Sample, SampleColumns, Vector
 
 # No named tuple: the collector passes over tuples of plain values, but not over those of a class of ours.
 Row = tuple[int, int, int, Vector, Quaternion | None, tuple[float, ...], bool, int]
 
 
-class SampleColumns(NamedTuple):
+class ValueColumns(NamedTuple):
     """The values of n samples, each (n,); see `Sample`."""
 
     sequence: tuple[int, ...]
@@ -43,9 +43,15 @@ class SampleRows(Sequence[Sample]):
             (s.sequence, s.device_ns, s.receive_ns, s.position, s.orientation, s.flexions, s.tracked, s.buttons)
         )
 
-    def columns(self) -> SampleColumns:
+    def columns(self) -> ValueColumns:
         """Return the values of all samples, of which there is at least one."""
-        return SampleColumns(*zip(*self._rows, strict=True))
+        return ValueColumns(*zip(*self._rows, strict=True))
+
+    def arrays(self) -> SampleColumns:
+        """Return all samples as arrays."""
+        if not self._rows:
+            return SampleColumns.of(())
+        return SampleColumns.of_values(self._tracker, *self.columns())
 
     def __len__(self) -> int:
         return len(self._rows)

@@ -16,7 +16,7 @@ from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
 from numpy.typing import NDArray
 
 from teachpath.io.store.mcap_file import McapFile, MessageBatch
-from teachpath.io.store.sample_rows import SampleColumns
+from teachpath.io.store.sample_rows import ValueColumns
 from teachpath.records import Array, Calibration
 
 POSE_TOPIC, FRAMES_TOPIC = "hand_pose", "frames"
@@ -39,7 +39,7 @@ class ViewerMessages:
         self._calibration = calibration
         self._has_frame = False
 
-    def batches(self, samples: SampleColumns) -> list[MessageBatch]:
+    def batches(self, samples: ValueColumns) -> list[MessageBatch]:
         """Return the messages of the next samples; an untracked sample has no pose to draw."""
         batches = []
         if not self._has_frame:

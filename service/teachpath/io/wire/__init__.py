@@ -32,6 +32,7 @@ from teachpath.io.wire.recording import (
     encode_recording_status,
     recording_document,
 )
+from teachpath.io.wire.sample_batches import SampleBatchDecoder
 from teachpath.io.wire.samples import (
     decode_sample,
     encode_sample,
@@ -42,6 +43,7 @@ from teachpath_proto.sample_rules import MAX_COORDINATE, MAX_SAMPLE_SIZE
 __all__ = [
     "MAX_COORDINATE",
     "MAX_SAMPLE_SIZE",
+    "SampleBatchDecoder",
     "decode_amendment",
     "decode_command",
     "decode_entry",
