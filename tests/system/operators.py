@@ -20,6 +20,7 @@ RESTING = frozenset(state for state in ExecutorState if state.is_resting)
 # Why the executor holds the arm by itself when the arm's own process gets no turn: an operator then says it again.
 STARVED = ("no joint state", "the arm has taken up no setpoint")
 AGAIN = "let the clutch go"  # what the executor asks for when the clutch is held though the arm does not follow
+SETTLED = 50  # control periods after the answer to an order in which the executor tells what came of it
 
 Status = dict[str, Any]
 Done = Callable[[], bool]
@@ -99,6 +100,33 @@ class Operator:
         except AssertionError:
             raise AssertionError(f"it never was so; {seen[-1]}") from None
         return seen[-1]
+
+    def step(self, name: str, way: float) -> float:
+        """Go a step and return where it ends; where setpoints were late, so that the arm rests short of it, try again.
+
+        Between two tries it goes the other way, so that it comes to no end of the path.
+        """
+        before = self.executions()[0].status.length
+        while abs((length := self.rest_after(name)) - before - way) >= 1e-5:
+            before = self.rest_after({"+ 1 cm": "− 1 cm", "− 1 cm": "+ 1 cm"}[name])
+        return length
+
+    def rest_after(self, name: str) -> float:
+        """Order a step and return where the arm comes to rest [m along the path]."""
+        self.press(name)
+        ordered = self.executions()[0].status.cycles
+        seen: list[tuple[float, int]] = []  # where the arm was held, and in which control period
+
+        def rests() -> bool:
+            now = self.executions()[0].status
+            if now.state == "held" and now.cycles > ordered + SETTLED:
+                seen.append((now.length, now.cycles))
+            return any(length == now.length and cycles < now.cycles - SETTLED for length, cycles in seen)
+
+        wait_until(rests, "the arm rests after a step")
+        length = seen[-1][0]
+        self.until(lambda status: abs(status["length"] - length) < 1e-5)  # the page says it, too
+        return length
 
 
 def is_order(answer: Any) -> bool:

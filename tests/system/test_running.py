@@ -31,7 +31,6 @@ TAP = """() => {
   for (const name of ["pointerdown", "pointerup"]) button.dispatchEvent(new PointerEvent(name, { bubbles: true }));
 }"""
 SCRIPT = (ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET
-SETTLED = 50  # control periods after the answer to an order in which the page is told of what came of it
 SMALL, SMALLER = (900, 420), (900, 240)  # less to draw
 Plans = list[Plan]  # one a way, in the order in which the ways were shown: by mouse, by the headset's hand
 
@@ -154,7 +153,7 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     visit.page.get_by_role("slider", name="Speed").fill("30")
     operator.until(lambda status: status["override"] == pytest.approx(0.3))
     for name, way in (("+ 1 cm", 0.01), ("− 1 cm", -0.01), ("− 1 cm", -0.01)):
-        length = step(operator, name, way)
+        length = operator.step(name, way)
     lengths = [length]
 
     def back(status: Status) -> bool:
@@ -177,25 +176,6 @@ def creep(visit: Visit, operator: Operator) -> None:
     assert operator.until(lambda status: status["length"] > 0.0)["override"] == pytest.approx(0.3)
     speed.fill("5")
     operator.until(lambda status: status["override"] == pytest.approx(0.05) and status["length"] > 0.03)
-
-
-def step(operator: Operator, name: str, way: float) -> float:
-    """Go a step and return where it ends; where setpoints were late, so that the arm rests short of it, go one more."""
-    before = operator.executions()[0].status
-    operator.press(name)
-    ordered = operator.executions()[0].status.cycles
-    seen: list[tuple[float, int]] = []  # where the arm was held, and in which control period
-
-    def rests() -> bool:
-        now = operator.executions()[0].status
-        if now.state == "held" and now.cycles > ordered + SETTLED:
-            seen.append((now.length, now.cycles))
-        return any(length == now.length and cycles < now.cycles - SETTLED for length, cycles in seen)
-
-    wait_until(rests, "the arm rests after a step")
-    length = seen[-1][0]
-    operator.until(lambda status: abs(status["length"] - length) < 1e-5)  # the page says it, too
-    return length if abs(length - before.length - way) < 1e-5 else step(operator, name, way)
 
 
 def hold(operator: Operator) -> Status:
