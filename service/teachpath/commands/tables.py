@@ -29,13 +29,18 @@ def print_run(run: Run, numbers: dict[str, int], console: Console | None = None)
 def clusters_table(run: Run, numbers: dict[str, int]) -> Table:
     """Return clusters, members, log-likelihoods and the selected ones of a run (Aleotti & Caselli 2005, Table I).
 
+    In mode default it shows the robust z as well, since that selects there and no log-likelihood does.
+
     Args:
         run: of learning.
         numbers: of the demonstrations, by id.
     """
     learned = run.learned
+    by_z = learned.mode == "default"
     table = Table(title=f"Results of trajectory clustering ({learned.mode} mode)")
-    for name in ("Cluster", "Demonstration", "Log-likelihood", "Selected"):
+    if by_z:
+        table.caption = "Robust z selects: 0 is like the others."
+    for name in ("Cluster", "Demonstration", "Log-likelihood", *(["Robust z"] if by_z else []), "Selected"):
         table.add_column(name, justify="right" if name != "Selected" else "center")
     for cluster in learned.clusters:
         for i, score in enumerate(cluster.scores):
@@ -43,6 +48,7 @@ def clusters_table(run: Run, numbers: dict[str, int]) -> Table:
                 str(cluster.index) if i == 0 else "",
                 str(numbers.get(score.demonstration, score.demonstration)),
                 f"{score.log_likelihood:.3f}",
+                *(["" if score.z is None else f"{score.z:.2f}"] if by_z else []),
                 "yes" if score.selected else "",
                 end_section=i == len(cluster.scores) - 1,
             )
