@@ -182,25 +182,28 @@ class BusSettings:
     """Where the Zenoh session of this process meets the others.
 
     Attributes:
-        endpoint: the service listens here as a Zenoh peer, workers and clients connect here; across machines
+        endpoint: the service or its router listens here, workers and clients connect here; across machines
             tls/HOST:PORT.
+        mode: peer: the service listens; router: it listens and passes on between further routers, too; client:
+            a router listens at the tls/ endpoint instead, configured by `teachpath station router`.
+        config: file of Zenoh's own configuration (JSON5) for the service's session, for what the station does
+            not set itself; empty: none.
         prefix: first segments of every key; one per station.
         robot: name of the arm in its keys.
         access_control: every role has its own login and its own keys; false lets every program that reaches the
             endpoint do everything.
         certificates: folder of the certificates for a tls/ endpoint, which `teachpath station certificates`
             makes.
-        router: a Zenoh router listens at the tls/ endpoint instead of the service, configured by `teachpath
-            station router`.
         connect_timeout: [s] how long to wait for the endpoint when connecting.
     """
 
     endpoint: str = "tcp/127.0.0.1:7447"
+    mode: str = "peer"
+    config: str = ""
     prefix: str = "teachpath/station"
     robot: str = "puma560"
     access_control: bool = True
     certificates: str = "teachpath-certificates"
-    router: bool = False
     connect_timeout: float = 10.0
 
 

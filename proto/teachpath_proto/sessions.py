@@ -28,12 +28,12 @@ def is_tls(endpoint: str) -> bool:
     return endpoint.startswith("tls/")
 
 
-def listening(endpoints: Sequence[str]) -> dict[str, object]:
+def listening(endpoints: Sequence[str], mode: str = "peer") -> dict[str, object]:
     """Return the values of the one session that the others connect to.
 
-    A peer does not route between other peers, but it does between its clients.
+    A peer does not route between other peers, but it does between its clients; a router does between all.
     """
-    return {**ALONE, "mode": "peer", "listen/endpoints": list(endpoints)}
+    return {**ALONE, "mode": mode, "listen/endpoints": list(endpoints)}
 
 
 def joining(endpoint: str, login: Login | None, *, timeout: float) -> dict[str, object]:

@@ -43,7 +43,10 @@ from teachpath_proto.keys import is_name, name_refusal
 
 PREFIX = "TEACHPATH_"
 # former settings -> the one that does their work
-REPLACED = dict.fromkeys(("learning.guard", "learning.min_silhouette"), "learning.min_separation")
+REPLACED = {
+    **dict.fromkeys(("learning.guard", "learning.min_silhouette"), "learning.min_separation"),
+    "bus.router": "bus.mode",
+}
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
 ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0), offset=(0.15, 0.17, 0.42))
 

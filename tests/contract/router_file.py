@@ -11,7 +11,7 @@ FILE = Path(__file__).parents[2] / "deploy" / "zenohd.json5"
 
 def text() -> str:
     """Return the whole file: every role once, as `teachpath station certificates` makes them."""
-    bus = BusSettings("tls/127.0.0.1:7447", router=True)
+    bus = BusSettings("tls/127.0.0.1:7447", mode="client")
     return router_config(bus, [Login(role.value, "", role, certificate="in its folder") for role in Role])
 
 

@@ -217,7 +217,7 @@ def test_a_certificate_that_was_removed_by_hand_or_without_a_ledger_is_followed_
 
 
 def test_over_a_router_each_certificate_may_do_the_same(tmp_path: Path) -> None:
-    bus = prepared(tmp_path, router=True)
+    bus = prepared(tmp_path, mode="client")
     text = said(tmp_path, "station", "router")
     document = json.loads("\n".join(line for line in text.splitlines() if not line.startswith("//")))
     router = open_session(document)
@@ -290,7 +290,7 @@ def test_an_authority_signs_nothing_that_would_outlive_it(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        (BusSettings(router=True), "a router knows programs by their certificates"),
+        (BusSettings(mode="client"), "a router knows programs by their certificates"),
         (BusSettings("tls/127.0.0.1:1", access_control=False), "certificates say who may do what; set it to true"),
     ],
 )

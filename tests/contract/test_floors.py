@@ -52,6 +52,7 @@ GENERATED = "teachpath_proto.*_pb2"  # the modules that protoc generates
 DOORS = {
     GENERATED: ["io/wire"],
     "zenoh": ["io/bus.py"],
+    "json5": ["io/bus_config.py"],
     "argon2": ["access/passwords.py"],
     "cryptography": ["io/certificates.py", "io/web_certificates.py"],
     "joserfc": ["io/identity_provider.py"],

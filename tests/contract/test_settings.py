@@ -126,6 +126,7 @@ WRONG = {
     "[webb]\nport = 1": "there is no setting webb; known here: bus, web",
     "[web]\nprot = 1": "there is no setting web.prot; known here: host, port",
     "[learning]\nguard = 0.5": "setting learning.guard was replaced by learning.min_separation",
+    "[bus]\nrouter = true": "setting bus.router was replaced by bus.mode",
     "[[calibrations]]\nname = 'a'\nscales = 2": "no setting calibrations.0.scales; known here: name, scale",
     "[[scenes]]\nname = 'a'\n[scenes.carried]\nweight = 2": "no setting scenes.0.carried.weight",
     "[web]\nport = 'many'": "setting web.port is 'many'; it should be a valid integer",

@@ -40,7 +40,7 @@ LOGINS = {
 def station_of(folder: Path, endpoint: str) -> dict[str, Login]:
     """Make certificates and router configuration as an operator does; return the logins for other machines."""
     folder.mkdir()
-    bus = {"endpoint": endpoint, "certificates": str(folder / "certificates"), "router": True}
+    bus = {"endpoint": endpoint, "certificates": str(folder / "certificates"), "mode": "client"}
     lines = [f"{name} = {json.dumps(value)}" for name, value in bus.items()]
     (folder / "station.toml").write_text("\n".join(["[bus]", *lines]))
     said(folder, "station", "certificates")
@@ -105,7 +105,7 @@ def test_who_has_a_certificate_takes_part_and_nobody_else(tmp_path: Path) -> Non
     certificates = tmp_path / "station" / "certificates"
     settings = {
         "TEACHPATH_BUS__ENDPOINT": endpoint,
-        "TEACHPATH_BUS__ROUTER": "true",
+        "TEACHPATH_BUS__MODE": "client",
         "TEACHPATH_BUS__CERTIFICATES": str(certificates),
         "TEACHPATH_SIMULATOR__START": "false",
     }

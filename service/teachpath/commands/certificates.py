@@ -44,8 +44,8 @@ def certificates(
     if files.prepare_authority(folder, now):
         print(f"authority made; whoever has {folder}/authority.key can make certificates of the station")
     there = {login.user: login for login in files.read_logins(folder)}
-    server = Role.ROUTER if bus.router else Role.SERVICE
-    roles = [role for role in Role if role is not Role.ROUTER or bus.router]
+    server = Role.ROUTER if bus.mode == "client" else Role.SERVICE
+    roles = [role for role in Role if role is not Role.ROUTER or server is role]
     wanted = {role.value: Login(role.value, "", role) for role in roles} | there
     issued = []
     for name, login in wanted.items():
@@ -72,9 +72,10 @@ def router(config: Config = None) -> None:
     from teachpath_proto.sessions import is_tls
 
     bus = settings_of(config, None).bus
-    if not (bus.router and is_tls(bus.endpoint)):
+    if not (bus.mode == "client" and is_tls(bus.endpoint)):
         raise UnusableInput(
-            f'the station has no router: set bus.router = true and bus.endpoint = "tls/HOST:7447"; it is {bus.endpoint}'
+            f'the station joins no router: set bus.mode = "client" and bus.endpoint = "tls/HOST:7447"; now it is '
+            f"{bus.mode} at {bus.endpoint}"
         )
     files.read_login(Path(bus.certificates), Role.ROUTER.value)  # says how it is made where it is not there
     print(router_config(bus, files.read_logins(Path(bus.certificates))), end="")

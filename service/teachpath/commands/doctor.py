@@ -81,7 +81,7 @@ def _examine_system(config: Path | None, data: Path | None, json_: bool) -> int:
     settings = settings_of(config, data)
     host, _, port = settings.bus.endpoint.rpartition("/")[2].rpartition(":")
     ports = [("web.port", settings.web.host, settings.web.port)]
-    if not settings.bus.router:
+    if settings.bus.mode != "client":
         ports.append(("bus.endpoint", host.strip("[]"), int(port)))
     findings = list(examine_system(Path(settings.store.data_dir), ports, running_services()))
     if json_:

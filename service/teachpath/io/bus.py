@@ -18,8 +18,9 @@ import zenoh
 import zenoh.ext
 
 from teachpath import errors
-from teachpath.errors import TeachpathError, Unreachable
+from teachpath.errors import TeachpathError, Unreachable, UnusableSettings
 from teachpath.io.bus_access import BusAccess, listening_config
+from teachpath.io.bus_config import read_bus_config
 from teachpath.io.bus_settings import BusSettings
 from teachpath_proto.logins import Login
 from teachpath_proto.sessions import joining, listening, open_session
@@ -82,7 +83,7 @@ class Bus(Protocol):
 
 
 def listen_on_bus(settings: BusSettings, access: BusAccess | None = None) -> Bus:
-    """Open the station's bus as its one listening peer, or where a router listens, as the service among its clients.
+    """Open the station's bus as its one listening session, or where a router listens, as the service among its clients.
 
     Args:
         settings: where.
@@ -90,15 +91,19 @@ def listen_on_bus(settings: BusSettings, access: BusAccess | None = None) -> Bus
 
     Raises:
         Unreachable: the endpoint is taken, or there is no router.
+        UnusableSettings: the file `bus.config` cannot be used.
     """
-    if settings.router:
-        return open_bus(settings, access.own if access else None)
+    below = read_bus_config(settings)
+    for key, value in below.items():
+        _require_known(settings.config, key, value)
+    if settings.mode == "client":
+        return _join(settings, access.own if access else None, below)
     guard: AbstractContextManager[dict[str, object]] = (
         nullcontext({}) if access is None else listening_config(access, settings.prefix)
     )
     with guard as guarded:
         return ZenohBus(
-            {**listening([settings.endpoint]), **guarded},
+            {**below, **listening([settings.endpoint], settings.mode), **guarded},
             f"{settings.endpoint}: is it taken by another service?",
         )
 
@@ -109,10 +114,27 @@ def open_bus(settings: BusSettings, login: Login | None = None) -> Bus:
     Raises:
         Unreachable: nobody listens there, or the login is not let in.
     """
+    return _join(settings, login, {})
+
+
+def _join(settings: BusSettings, login: Login | None, below: Mapping[str, object]) -> Bus:
     return ZenohBus(
-        joining(settings.endpoint, login, timeout=settings.connect_timeout),
+        {**below, **joining(settings.endpoint, login, timeout=settings.connect_timeout)},
         f"{settings.endpoint}: is the service running there, and is the login one of its own?",
     )
+
+
+def _require_known(file: str, key: str, value: object) -> None:
+    """Raise UnusableSettings where Zenoh does not take a value, with the innermost key to blame."""
+    try:
+        zenoh.Config().insert_json5(key, json.dumps(value))
+    except zenoh.ZError as error:
+        for name, inner in value.items() if isinstance(value, dict) else ():
+            _require_known(file, f"{key}/{name}", inner)
+        reason = re.search(r'"(.+?)"', str(error))  # the rest is about Zenoh's source
+        raise UnusableSettings(
+            f"Zenoh refuses {key} in {file} (bus.config): {reason[1] if reason else error}; its documents list the keys"
+        ) from None
 
 
 class ZenohBus:

@@ -37,10 +37,10 @@ def prepare_access(bus: BusSettings) -> BusAccess | None:
     """
     if is_tls(bus.endpoint):
         return _certified(bus)
-    if bus.router:
+    if bus.mode == "client":
         raise UnusableSettings(
-            f"bus.router is true and bus.endpoint {bus.endpoint}: a router knows programs by their certificates; set "
-            "an endpoint tls/HOST:PORT, or leave the router out"
+            f"bus.mode is client and bus.endpoint {bus.endpoint}: a router knows programs by their certificates; set "
+            "an endpoint tls/HOST:PORT, or another mode"
         )
     if not bus.access_control:
         return None

@@ -14,7 +14,7 @@ from teachpath_proto.sessions import ALONE, TLS
 HEADER: Final = """\
 // A Zenoh router for a station whose programs run on several machines; `teachpath station router` writes this file:
 //
-//   teachpath station certificates --host NAME   # with bus.router = true and bus.endpoint = "tls/NAME:7447"
+//   teachpath station certificates --host NAME   # with bus.mode = "client" and bus.endpoint = "tls/NAME:7447"
 //   teachpath station router > zenohd.json5      # again after every `teachpath login create` and `login revoke`
 //   zenohd --config zenohd.json5
 //
