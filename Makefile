@@ -106,9 +106,9 @@ programs:
 	@$(SEEN) nginx >/dev/null 2>&1 || \
 		echo "no nginx found: the tests behind a proxy will be skipped; get it with: sudo apt-get install nginx-light"
 
-# The system tests run one after the other, the rest beside them.
+# The system tests run one after the other, the rest beside them; they wait so much that two cores have work for three.
 test: check programs
-	$(BIN)/python -m pytest -n 2 --no-loadscope-reorder $(ARGS)
+	$(BIN)/python -m pytest -n 3 --no-loadscope-reorder $(ARGS)
 
 bench: $(READY)
 	@$(BIN)/python -m tests.bench.run $(ARGS)

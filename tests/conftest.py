@@ -94,12 +94,22 @@ UNDEMANDING = {
 }  # fmt: skip
 
 
+def scope(nodeid: str) -> str:
+    """What one worker runs in one go: the system tests, which take longest, or a module of the rest."""
+    module = nodeid.partition("::")[0]
+    return "tests/system" if module.startswith("tests/system/") and module not in UNDEMANDING else module
+
+
 class SystemBesideTheRest(LoadScopeScheduling):
     """One worker runs the system tests, one after the other, while others run whole modules of the rest."""
 
     def _split_scope(self, nodeid: str) -> str:
-        module = nodeid.partition("::")[0]
-        return "tests/system" if module.startswith("tests/system/") and module not in UNDEMANDING else module
+        return scope(nodeid)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with what takes longest."""
+    items.sort(key=lambda item: scope(item.nodeid) != "tests/system")
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SystemBesideTheRest:
