@@ -82,6 +82,17 @@ def test_one_is_named_by_words_and_by_the_beginning_of_its_id(
     assert shown["id"] in said(url, *words) or kind == "runs"
 
 
+def test_files_that_were_written_are_told(station: Station, url: str, tmp_path: Path) -> None:
+    curve, motion = tmp_path / "curve.json", tmp_path / "motion.csv"
+    exported = json.loads(said(url, "curve", "export", f"{TASK}/1", "--out", str(curve), "--json"))
+    path = station.paths(TASK)[0].id
+    assert exported == {"file": str(curve), "bytes": curve.stat().st_size, "path": path, "version": 1}
+    saved = json.loads(said(url, "curve", "import", path, str(curve), "--branch", "again", "--json"))
+    assert saved == json.loads(said(url, "curve", "list", path, "--json"))[-1]
+    written = json.loads(said(url, "export", "plan", f"{TASK}/1", "-o", str(motion), "--json"))
+    assert written == {"file": str(motion), "bytes": motion.stat().st_size}
+
+
 def test_the_station_its_tasks_jobs_and_scenes_are_shown(station: Station, url: str) -> None:
     assert "no executor has said" in said(url, "status")
     assert json.loads(said(url, "status", "--json"))["version"] == station.health().version

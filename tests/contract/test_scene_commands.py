@@ -83,11 +83,12 @@ def test_a_scene_is_copied_removed_and_brought_back(file: Path, url: str) -> Non
         assert "removed" in said(url, "versions", "shelf")
         said(url, "restore", "shelf")
         assert station.get_scene("shelf").scene.floor == -0.5
-        said(url, "restore", "shelf", "--version", str(first))
+        restored = json.loads(said(url, "restore", "shelf", "--version", str(first), "--json"))
+        assert restored["number"] == station.scene_versions("shelf")[0].number
         assert station.get_scene("shelf").scene == document
         assert station.get_scene("shelf", first).version.number == first
         copy = f"shelf-{first}"  # a name is copied to once
-        assert said(url, "copy", "shelf", copy) == f"scene {copy}\n"
+        assert json.loads(said(url, "copy", "shelf", copy, "--json"))["scene"] == copy
         assert station.get_scene(copy).scene.obstacles == document.obstacles
 
 

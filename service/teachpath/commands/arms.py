@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,7 +12,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, opened_store, stored_settings
-from teachpath.commands.printing import print_columns, print_json
+from teachpath.commands.printing import print_answer, print_columns, print_json
 from teachpath.errors import UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
 
@@ -40,6 +41,7 @@ def add(
     gripper: Gripper = False,
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Read an arm from its model and keep it; a changed one becomes the next version of its name."""
     if not is_name(name):
@@ -49,13 +51,10 @@ def add(
     with opened_store(settings) as store:
         stored = store.arms.add(arm, Path(file).name)
     note(settings, f"add arm {name}@{stored.version} of {Path(file).name}, {stored.hash}")
-    print(f"arm {name}@{stored.version}: {len(arm.links)} joints, {stored.hash[:12]}")
-    for line in _notes(arm):
-        print(line)
-    if len(arm.links) == 6:
-        print(f"Make it the arm of the station: teachpath serve --arm {name} (setting motion.arm)")
-    else:
-        print("It is kept and shown; plans are made for arms of six joints.")
+    moves = f"Make it the arm of the station: teachpath serve --arm {name} (setting motion.arm)"
+    shown = "It is kept and shown; plans are made for arms of six joints."
+    said = f"arm {name}@{stored.version}: {len(arm.links)} joints, {stored.hash[:12]}"
+    print_answer(stored, said, *_notes(arm), moves if len(arm.links) == 6 else shown, json_=json_)
 
 
 @app.command("list")
@@ -81,6 +80,7 @@ def check(
     gripper: Gripper = False,
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Say what an arm's model has: joints with limits and who gave them, masses, and which links may collide."""
     if Path(arm).suffix or arm in _examples():
@@ -88,6 +88,10 @@ def check(
     else:
         with opened_store(stored_settings(config, data)) as store:
             checked = store.arms.versions(arm)[0].arm
+    sentences = [*_collisions(checked), *_notes(checked)]
+    if json_:
+        print_json({"arm": asdict(checked), "notes": sentences})
+        return
     rows = [
         (joint.name, f"{_angle(joint.lower)} to {_angle(joint.upper)}", *map(_limit, _rates(joint)))
         for joint in checked.joints
@@ -95,8 +99,8 @@ def check(
     heads = ("joint", "range [deg]", "speed [rad/s]", "acceleration [rad/s^2]", "jerk [rad/s^3]", "torque [N m]")
     print_columns(heads, rows, none="")
     print(f"mass {sum(link.mass for link in checked.links):.2f} kg; every link's inertia is one that a body can have")
-    for line in (*_collisions(checked), *_notes(checked)):
-        print(line)
+    for sentence in sentences:
+        print(sentence)
 
 
 def _collisions(arm: SerialArm) -> Iterator[str]:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from teachpath.commands.options import Config, Data, stored_settings
+from teachpath.commands.options import Config, Data, Json, stored_settings
+from teachpath.commands.printing import print_answer
 from teachpath.errors import StorageUnavailable, TeachpathError
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ def verify(
     ] = "",
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Check every entry against the one before, and name the first that is broken.
 
@@ -39,7 +41,10 @@ def verify(
     if fault := log.verify(noted):
         raise StorageUnavailable(f"the audit log is broken: {fault}")
     newest = log.newest()
-    print(f"{newest.number} entries are whole; hash of the newest: {newest.hash}" if newest else "no entries yet")
+    said = f"{newest.number} entries are whole; hash of the newest: {newest.hash}" if newest else "no entries yet"
+    print_answer(
+        {"entries": newest.number if newest else 0, "hash": newest.hash if newest else None}, said, json_=json_
+    )
 
 
 @app.command("export")

@@ -10,7 +10,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, settings_of, stored_settings
-from teachpath.commands.printing import print_json
+from teachpath.commands.printing import print_answer, print_json
 from teachpath.commands.progress import progress_bar
 
 
@@ -48,6 +48,7 @@ def restore(
     replace: Annotated[bool, typer.Option("--replace", help="Set aside what is in the data folder.")] = False,
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Bring a backup back, after every file of it was compared with its SHA-256. Stop the service first.
 
@@ -59,7 +60,9 @@ def restore(
     settings = settings_of(config, data)
     aside = bring_back(source, settings.store, replace=replace)
     note(settings, f"restore {source}{f', what was there is in {aside}' if aside else ''}")
-    print(f"{settings.store.data_dir}: restored from {source}" + (f"; what was there is in {aside}" if aside else ""))
+    kept = f"; what was there is in {aside}" if aside else ""
+    said = {"data": settings.store.data_dir, "source": str(source), "aside": str(aside) if aside else None}
+    print_answer(said, f"{settings.store.data_dir}: restored from {source}{kept}", json_=json_)
 
 
 def prune(

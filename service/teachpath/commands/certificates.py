@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from teachpath.commands.audit import note
-from teachpath.commands.options import Config, settings_of
+from teachpath.commands.options import Config, Json, settings_of
+from teachpath.commands.printing import print_answer
 from teachpath.errors import UnusableInput
 from teachpath_proto.logins import Login, Role, write_logins
 
@@ -28,6 +29,7 @@ def certificates(
     host: Host = None,
     renew: Annotated[bool, typer.Option("--renew", help="Renew all, not only those that end within 30 days.")] = False,
     config: Config = None,
+    json_: Json = False,
 ) -> None:
     """Make the authority and the certificates of all roles, or renew those that end soon.
 
@@ -41,27 +43,33 @@ def certificates(
     settings, now = settings_of(config, None), datetime.now(UTC)
     bus = settings.bus
     folder = Path(bus.certificates)
-    if files.prepare_authority(folder, now):
-        print(f"authority made; whoever has {folder}/authority.key can make certificates of the station")
+    sentences = []
+    if made_authority := files.prepare_authority(folder, now):
+        sentences.append(f"authority made; whoever has {folder}/authority.key can make certificates of the station")
     there = {login.user: login for login in files.read_logins(folder)}
     server = Role.ROUTER if bus.mode == "client" else Role.SERVICE
     roles = [role for role in Role if role is not Role.ROUTER or server is role]
     wanted = {role.value: Login(role.value, "", role) for role in roles} | there
-    issued = []
+    issued, held = [], []
     for name, login in wanted.items():
         hosts = _hosts(bus, there.get(name), host or []) if name == server else []
         has_hosts = name not in there or set(hosts) <= set(files.hosts_of(there[name]))
         if name in there and has_hosts and not renew and files.expiry(login) - now > RENEWAL:
-            print(f"{name}: valid until {files.expiry(login):%Y-%m-%d}")
+            held.append(_held(name, "as before", login))
+            sentences.append(f"{name}: valid until {files.expiry(login):%Y-%m-%d}")
             continue
         made = files.issue(folder, login, now, hosts=hosts)
         issued.append(name)
-        print(f"{name}: {'renewed' if name in there else 'made'}, valid until {files.expiry(made):%Y-%m-%d}")
+        state = "renewed" if name in there else "made"
+        held.append(_held(name, state, made))
+        sentences.append(f"{name}: {state}, valid until {files.expiry(made):%Y-%m-%d}")
         if made.role.value != name:
             write_logins(file := folder / f"{name}.login.json", [made])
-            print(f"  give {file} to it")
+            sentences.append(f"  give {file} to it")
     note(settings, f"make certificates of the bus: {', '.join(issued) or 'none'}")
-    print("what runs now goes on with the old ones until it is started again")
+    sentences.append("what runs now goes on with the old ones until it is started again")
+    said = {"folder": str(folder), "authority_made": made_authority, "certificates": held}
+    print_answer(said, *sentences, json_=json_)
 
 
 @app.command("router")
@@ -79,6 +87,12 @@ def router(config: Config = None) -> None:
         )
     files.read_login(Path(bus.certificates), Role.ROUTER.value)  # says how it is made where it is not there
     print(router_config(bus, files.read_logins(Path(bus.certificates))), end="")
+
+
+def _held(name: str, state: str, login: Login) -> dict[str, object]:
+    from teachpath.io.certificates import expiry
+
+    return {"name": name, "state": state, "expires_ns": round(expiry(login).timestamp()) * 1_000_000_000}
 
 
 def _hosts(bus: BusSettings, there: Login | None, further: list[str]) -> list[str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from teachpath.commands.options import connected, with_arm
+from teachpath.commands.printing import print_json
 from teachpath.commands.references import find_plan
 from teachpath.config import load
 from teachpath.errors import UnusableRecording
@@ -21,14 +22,17 @@ from teachpath.nurbs import Curve
 from teachpath.records import Plan
 
 
-def judge_file(file: Path, plan: str | None, url: str, config: Path | None) -> None:
+def judge_file(file: Path, plan: str | None, url: str, config: Path | None, *, json_: bool = False) -> None:
     """Judge a log of setpoints, print what was measured, and end with status 1 and a sentence when it breaks something.
+
+    The sentences count the joints from 1; an arm that was added has names for them, which are printed too.
 
     Args:
         file: a recording of an execution (MCAP), or a CSV.
         plan: id of the plan that was meant, when the file does not say.
         url: of the service that has it.
         config: settings file, which names the arm where no signed plan does.
+        json_: whether one JSON object is printed: file, arm, joints, measured, faults.
     """
     try:
         content = file.read_bytes()
@@ -41,14 +45,23 @@ def judge_file(file: Path, plan: str | None, url: str, config: Path | None) -> N
     if plan is not None:
         meant, path = _meant(plan, url)
     arm = with_arm(load(config)).arm
-    judgement = check_log(log, path, (meant and certified_arm(meant, arm)) or arm)
-    for sentence in judgement.measured:
-        print(sentence)
-    if judgement.faults:
+    judged = (meant and certified_arm(meant, arm)) or arm
+    judgement = check_log(log, path, judged)
+    joints = [joint.name for joint in judged.model.joints] if judged.model else []
+    if json_:
+        measured = {"measured": judgement.measured, "faults": judgement.faults}
+        print_json({"file": str(file), "arm": judged.name, "joints": joints, **measured})
+    else:
+        for sentence in judgement.measured:
+            print(sentence)
         for sentence in judgement.faults:
             print(f"BROKEN: {sentence}")
+        if joints:
+            print(f"joints of {judged.name}: {', '.join(f'{number} {name}' for number, name in enumerate(joints, 1))}")
+    if judgement.faults:
         sys.exit(f"teachpath: {file.name} breaks {len(judgement.faults)} of what it must keep: {judgement.faults[0]}")
-    print(f"{file.name} keeps every limit" + (" and the path" if path is not None else ""))
+    if not json_:
+        print(f"{file.name} keeps every limit" + (" and the path" if path is not None else ""))
 
 
 def _read_motion(file: Path) -> tuple[SetpointLog, Plan | None, Curve | None]:
@@ -57,7 +70,7 @@ def _read_motion(file: Path) -> tuple[SetpointLog, Plan | None, Curve | None]:
         why = motion.fault or f"it has {len(motion.setpoints)} setpoints"
         raise UnusableRecording(f"{file.name} holds no motion that could be judged: {why}")
     if motion.fault:
-        print(f"{file.name} is damaged ({motion.fault}); judged up to there")
+        print(f"{file.name} is damaged ({motion.fault}); judged up to there", file=sys.stderr)
     sent = motion.setpoints
     cycles = np.array([s.cycle for s in sent])
     log = SetpointLog(

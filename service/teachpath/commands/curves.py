@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import print_columns, print_json
+from teachpath.commands.printing import print_answer, print_columns, print_json
 from teachpath.commands.references import find_path
 from teachpath.errors import UnusableInput
 
@@ -51,8 +51,11 @@ def export(
         str, typer.Option(help="json of geomdl (NURBS-Python), dxf (SPLINE) or iges (entity 126).")
     ] = "json",
     url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Write a version exactly, weights included: for NURBS-Python, or in metres for CAD."""
+    if json_ and out is None:
+        raise UnusableInput("--json says what was written to --out; without it the curve itself is printed")
     if format not in FORMATS:
         raise UnusableInput(f"there is no format {format!r} of curves; known: {', '.join(FORMATS)}")
     from teachpath.io.documents import from_document
@@ -65,7 +68,8 @@ def export(
         sys.stdout.write(text)
     else:
         out.write_text(text, encoding="utf-8")
-        print(f"version {stored.version} of {path} written to {out}")
+        said = {"file": str(out), "bytes": len(text.encode()), "path": stored.id, "version": stored.version}
+        print_answer(said, f"version {stored.version} of {path} written to {out}", json_=json_)
 
 
 @app.command("import")
@@ -78,6 +82,7 @@ def import_(
     author: Annotated[str, typer.Option(help="Who made it.")] = "",
     note: Annotated[str, typer.Option(help="Why.")] = "",
     url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Save a curve from a file as a new version; none is ever saved over another."""
     from teachpath.exchange import from_json
@@ -88,7 +93,8 @@ def import_(
         path = find_path(station, path)
         number = base if base is not None else _version(station, path, None).version
         saved = station.save_version(path, curve, base=number, branch=branch, name=name, author=author, note=note)
-    print(f"saved as version {saved.number} of {path}, on branch {saved.branch}; certify it with: teachpath plan")
+    said = f"saved as version {saved.number} of {path}, on branch {saved.branch}; certify it with: teachpath plan"
+    print_answer(saved, said, json_=json_)
 
 
 @app.command("compare")

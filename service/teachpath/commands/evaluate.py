@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from teachpath.commands.options import Config, Data, connected, settings_of, stored_settings
+from teachpath.commands.options import Config, Data, Json, connected, settings_of, stored_settings
+from teachpath.commands.printing import print_answer
 from teachpath.commands.progress import progress_bar
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.lengths import describe_length
@@ -72,6 +73,7 @@ def diff(
     url: Annotated[str, typer.Option(help="Address of a service that has both; else the data folder is read.")] = "",
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Say why the paths of two learning runs differ: inputs, settings, versions, clusters, selection, paths."""
     from teachpath.io.store.store import Store
@@ -87,7 +89,7 @@ def diff(
         finally:
             store.close()
     sentences = compare(before, after)
-    print("\n".join(sentences) if sentences else "the two runs are the same")
+    print_answer({"differences": sentences}, *(sentences or ["the two runs are the same"]), json_=json_)
 
 
 def read_groups(folder: Path, format: str, *, units: str, rate: float) -> dict[str, list[Trajectory]]:

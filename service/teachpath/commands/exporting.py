@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from teachpath.commands.options import Config, Data, Url, connected, opened_store, stored_settings, with_arm
+from teachpath.commands.options import Config, Data, Json, Url, connected, opened_store, stored_settings, with_arm
+from teachpath.commands.printing import print_answer, print_json
 from teachpath.commands.progress import progress_bar
 from teachpath.commands.references import find_execution, find_plan
 from teachpath.errors import UnusableInput
@@ -41,12 +42,23 @@ def demonstrations(
     all_: Annotated[bool, typer.Option("--all", help="Also rejected, discarded and bad ones.")] = False,
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Write demonstrations to files.
 
     csv, mcap and archive can be imported again without a loss. Nothing is overwritten, and nothing half written stays.
     """
-    _demonstrations(what, format, into, numbers=number or (), all_=all_, settings=stored_settings(config, data))
+    settings = stored_settings(config, data)
+    written, left_out = _written(what, format, into, numbers=number or (), all_=all_, settings=settings)
+    folder = Path(settings.store.data_dir).absolute()
+    if json_:
+        print_json({"files": list(map(str, written)), "data": str(folder), "left_out": left_out})
+        return
+    for file in written:
+        print(file)
+    print(f"from {folder}", file=sys.stderr)
+    if left_out:
+        print(f"{left_out} rejected, discarded or bad ones are left out; --all writes them too", file=sys.stderr)
 
 
 @app.command("report")
@@ -55,6 +67,7 @@ def report(
     into: Into = Path(),
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Write the review package of a learning run, as one HTML file."""
     settings = stored_settings(config, data)
@@ -62,7 +75,7 @@ def report(
         into.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UnusableInput(f"cannot make {into}: {error.strerror}; give another folder with --into") from None
-    _review(run, into / f"{run}.html", settings)
+    _review(run, into / f"{run}.html", settings, json_=json_)
 
 
 @app.command("plan")
@@ -72,13 +85,15 @@ def plan(
     format: Format = "csv",
     rate: Rate = None,
     url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Write the motion of a plan along its path for another program.
 
     Only a plan whose certificate holds leaves. The head of the file says what was proved, and what is not covered.
     """
     with connected(url) as station:
-        _write_new(out, station.program(find_plan(station, plan), format, rate=rate))
+        content = station.program(find_plan(station, plan), format, rate=rate)
+    _write_new(out, content, json_=json_)
 
 
 @app.command("execution")
@@ -88,13 +103,15 @@ def execution(
     format: Format = "csv",
     rate: Rate = None,
     url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Write what the arm was sent in an execution for another program."""
     with connected(url) as station:
-        _write_new(out, station.executed_program(find_execution(station, execution), format, rate=rate))
+        content = station.executed_program(find_execution(station, execution), format, rate=rate)
+    _write_new(out, content, json_=json_)
 
 
-def _write_new(file: Path, content: bytes) -> None:
+def _write_new(file: Path, content: bytes, *, json_: bool) -> None:
     """Write a file that is not there yet, whole or not at all."""
     try:
         with file.open("xb") as out:
@@ -108,12 +125,13 @@ def _write_new(file: Path, content: bytes) -> None:
         raise UnusableInput(f"{file} is there already; give another place with --out, or move it away") from None
     except OSError as error:
         raise UnusableInput(f"cannot write {file}: {error.strerror}; give another place with --out") from None
-    print(f"{file}: {len(content)} bytes")
+    print_answer({"file": str(file), "bytes": len(content)}, f"{file}: {len(content)} bytes", json_=json_)
 
 
-def _demonstrations(
+def _written(
     what: str, kind: str, into: Path, *, numbers: Sequence[int], all_: bool, settings: Settings
-) -> None:
+) -> tuple[Sequence[Path], int]:
+    """Write demonstrations; returns the files, and how many are left out."""
     from teachpath.offline.exporting import chosen, export_demonstrations
     from teachpath.recorder.annotations import Annotations
     from teachpath.robot.scenes import Scenes
@@ -126,14 +144,10 @@ def _demonstrations(
             trajectory = Annotations(store, settings.recording, scenes.get).trajectory
             written = export_demonstrations(store, rows, kind, into, trajectory=trajectory, progress=show)
         left_out = len(store.demonstrations(what)) - len(rows) if known and not numbers else 0
-    for file in written:
-        print(file)
-    print(f"from {Path(settings.store.data_dir).absolute()}", file=sys.stderr)
-    if left_out:
-        print(f"{left_out} rejected, discarded or bad ones are left out; --all writes them too", file=sys.stderr)
+    return written, left_out
 
 
-def _review(run: str, file: Path, settings: Settings) -> None:
+def _review(run: str, file: Path, settings: Settings, *, json_: bool) -> None:
     from teachpath.offline.report import review_of, write_package
     from teachpath.recorder.annotations import Annotations
     from teachpath.robot.scenes import Scenes
@@ -152,4 +166,6 @@ def _review(run: str, file: Path, settings: Settings) -> None:
             dwell=settings.executor.dwell,
         )
     size = write_package(review, file)
-    print(f"{file}: {size / 1e6:.1f} MB, {len(review.run.learned.paths)} paths, {review.count('motion')} of them move")
+    paths, moving = len(review.run.learned.paths), review.count("motion")
+    said = {"file": str(file), "bytes": size, "paths": paths, "moving": moving}
+    print_answer(said, f"{file}: {size / 1e6:.1f} MB, {paths} paths, {moving} of them move", json_=json_)

@@ -9,7 +9,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Json, settings_of
-from teachpath.commands.printing import print_columns, print_json
+from teachpath.commands.printing import print_answer, print_columns, print_json
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.logins import Login, Role, write_logins
@@ -29,6 +29,7 @@ def create(
     only: Annotated[str, typer.Option(help="The one tracker or robot that it may be; any unless given.")] = "",
     into: Annotated[Path | None, typer.Option(help="File to write for the other program; NAME.login.json.")] = None,
     config: Config = None,
+    json_: Json = False,
 ) -> None:
     """Make a login for a program of another user or machine, and a file to give to it.
 
@@ -50,7 +51,8 @@ def create(
     file = into or Path(f"{name}.login.json")
     write_logins(file, [login])
     note(settings, f"create login {name}, {role}{f', only {only}' if only else ''}")
-    print(f"login {name} ({role}{f', only {only}' if only else ''}) is in {file}: keep it secret; {RESTART}")
+    said = f"login {name} ({role}{f', only {only}' if only else ''}) is in {file}: keep it secret; {RESTART}"
+    print_answer({"name": name, "role": role.value, "only": only, "file": str(file)}, said, json_=json_)
 
 
 @app.command("list")
@@ -66,7 +68,7 @@ def list_(config: Config = None, json_: Json = False) -> None:
 
 
 @app.command("revoke")
-def revoke(name: Name, config: Config = None) -> None:
+def revoke(name: Name, config: Config = None, json_: Json = False) -> None:
     """Take a login back; one of this user's own programs gets a new password."""
     from teachpath.io.bus_logins import LOCAL, revoke_login, station_logins
     from teachpath_proto.sessions import is_tls
@@ -80,4 +82,5 @@ def revoke(name: Name, config: Config = None) -> None:
     revoke_login(bus, name)
     note(settings, f"revoke login {name}")
     renewed = name in LOCAL and not is_tls(bus.endpoint)
-    print(f"login {name} is {'given a new password' if renewed else 'revoked'}; {RESTART}")
+    said = f"login {name} is {'given a new password' if renewed else 'revoked'}; {RESTART}"
+    print_answer({"name": name, "revoked": not renewed}, said, json_=json_)

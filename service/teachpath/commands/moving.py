@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from teachpath.commands.options import Config, Json, Url, connected, stop_addresses
-from teachpath.commands.printing import print_json
+from teachpath.commands.printing import print_answer, print_json
 from teachpath.commands.progress import execution_shown, progress_bar
 from teachpath.commands.references import find_execution, find_path, find_plan
 from teachpath.errors import TeachpathError, UnusableInput
@@ -55,7 +55,7 @@ def run(
     from teachpath.commands.checking import judge_file
 
     if check is not None:
-        judge_file(check, plan, url, config)
+        judge_file(check, plan, url, config, json_=json_)
         return
     if plan is None:
         raise UnusableInput("name the plan to run, or last; teachpath plans lists them, teachpath plan PATH makes one")
@@ -126,11 +126,11 @@ def _at_rest(status: ExecutorStatus) -> str:
     return f"{status.execution} has {status.state}" if status.execution else "nothing moves the arm"
 
 
-def acknowledge(url: Url = "") -> None:
+def acknowledge(url: Url = "", json_: Json = False) -> None:
     """Let the arm be moved again that moved unasked, once you have seen why.
 
     Nothing starts before; it is refused while the arm does not rest for 2 s.
     """
     with connected(url, operator="teachpath acknowledge") as station:
-        station.acknowledge_motion()
-    print("acknowledged: executions may start")
+        status = station.acknowledge_motion()
+    print_answer(status, "acknowledged: executions may start", json_=json_)

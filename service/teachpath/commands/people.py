@@ -12,7 +12,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, opened_store, settings_of
-from teachpath.commands.printing import print_columns, print_json
+from teachpath.commands.printing import print_answer, print_columns, print_json
 from teachpath.commands.tokens import capabilities
 from teachpath.errors import UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
@@ -30,6 +30,7 @@ def add(
     role: Annotated[list[str], typer.Option(help="What the person may do; may be repeated (docs/access.md).")],
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Add a person, who signs in a second later; the password is asked for, or read from the standard input."""
     from teachpath.access.passwords import hash_password
@@ -40,15 +41,15 @@ def add(
     kept, now = hash_password(_password(name), name), time.time_ns()
     settings = settings_of(config, data)
     with opened_store(settings) as store:
-        store.people.add(Person(name, capabilities(role), kept, now, now))
+        store.people.add(person := Person(name, capabilities(role), kept, now, now))
     note(settings, f"add person {name}, {' '.join(role)}")
-    print(f"{name} may {', '.join(role)}")
+    print_answer(_described(person, 0), f"{name} may {', '.join(role)}", json_=json_)
     if settings.auth.mode == "oidc":
         print(f"People sign in at {settings.oidc.name} now: {name} can when auth.mode is token.", file=sys.stderr)
 
 
 @app.command("password")
-def password(name: Name, config: Config = None, data: Data = None) -> None:
+def password(name: Name, config: Config = None, data: Data = None, json_: Json = False) -> None:
     """Give a person another password; every session begun with the former one ends within a second."""
     from teachpath.access.passwords import hash_password
 
@@ -57,7 +58,7 @@ def password(name: Name, config: Config = None, data: Data = None) -> None:
     with opened_store(settings) as store:
         store.people.change_password(name, kept, time.time_ns())
     note(settings, f"change the password of {name}")
-    print(f"{name} has another password")
+    print_answer({"name": name, "sessions": 0}, f"{name} has another password", json_=json_)
 
 
 @app.command("list")
@@ -82,13 +83,13 @@ def list_(config: Config = None, data: Data = None, json_: Json = False) -> None
 
 
 @app.command("remove")
-def remove(name: Name, config: Config = None, data: Data = None) -> None:
+def remove(name: Name, config: Config = None, data: Data = None, json_: Json = False) -> None:
     """Remove a person; every session ends within a second, and so does what was opened in it."""
     settings = settings_of(config, data)
     with opened_store(settings) as store:
         store.people.remove(name)
     note(settings, f"remove person {name}")
-    print(f"{name} is removed")
+    print_answer({"name": name, "removed": True}, f"{name} is removed", json_=json_)
 
 
 def _described(person: Person, sessions: int) -> dict[str, object]:

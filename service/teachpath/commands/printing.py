@@ -48,6 +48,15 @@ def print_list(
         print_columns(names, rows, none=none)
 
 
+def print_answer(record: Any, *sentences: str, json_: bool) -> None:
+    """Print what a command did: as JSON, or in sentences."""
+    if json_:
+        print_json(record)
+        return
+    for sentence in sentences:
+        print(sentence)
+
+
 def verdict_word(verdict: str) -> str:
     """Return what a sentence says of a demonstration with this verdict."""
     return "rejected" if verdict == "reject" else str(verdict)

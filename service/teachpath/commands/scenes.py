@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import moment, print_columns, print_json
+from teachpath.commands.printing import moment, print_answer, print_columns, print_json
 from teachpath.errors import UnusableInput
 
 app = typer.Typer(
@@ -31,15 +31,15 @@ def add(
     name: Annotated[str, typer.Option(help="Of the scene, instead of the one in the file.")] = "",
     note: Note = "",
     url: Url = "",
+    json_: Json = False,
 ) -> None:
     """Make the scenes of a file, or change those of these names; meshes (OBJ, STL) are read beside the file."""
     read = _scenes(file)
     if name and len(read) > 1:
         raise UnusableInput(f"{file} has {len(read)} scenes; name is for a file with one")
     with connected(url) as station:
-        for scene in read:
-            saved = station.save_scene(name or scene["name"], _without_name(scene), note=note)
-            print(f"scene {saved.scene}, version {saved.number}")
+        saved = [station.save_scene(name or scene["name"], _without_name(scene), note=note) for scene in read]
+    print_answer(saved, *(f"scene {each.scene}, version {each.number}" for each in saved), json_=json_)
 
 
 @app.command("show")
@@ -68,29 +68,35 @@ def versions(name: Name, url: Url = "", json_: Json = False) -> None:
 
 
 @app.command("copy")
-def copy(name: Name, to: Annotated[str, typer.Argument(help="Name of the copy.")], url: Url = "") -> None:
+def copy(
+    name: Name,
+    to: Annotated[str, typer.Argument(help="Name of the copy.")],
+    url: Url = "",
+    json_: Json = False,
+) -> None:
     """Keep a scene under another name too."""
     with connected(url) as station:
-        print(f"scene {station.copy_scene(name, to).scene}")
+        made = station.copy_scene(name, to)
+    print_answer(made, f"scene {made.scene}", json_=json_)
 
 
 @app.command("remove")
-def remove(name: Name, url: Url = "") -> None:
+def remove(name: Name, url: Url = "", json_: Json = False) -> None:
     """Remove a scene that no task is done in; its versions stay."""
     with connected(url) as station:
-        station.remove_scene(name)
-    print(f"scene {name} is removed; bring it back with: teachpath scene restore {name}")
+        removed = station.remove_scene(name)
+    print_answer(removed, f"scene {name} is removed; bring it back with: teachpath scene restore {name}", json_=json_)
 
 
 @app.command("restore")
-def restore(name: Name, version: Number = None, url: Url = "") -> None:
+def restore(name: Name, version: Number = None, url: Url = "", json_: Json = False) -> None:
     """Save a former version of a scene as its newest, or bring back one that was removed."""
     with connected(url) as station:
         newest = station.scene_versions(name)[0].number
         number = newest if version is None else version
         document = _without_name(asdict(station.get_scene(name, number).scene))
         saved = station.save_scene(name, document, base=newest, note=f"version {number} again")
-    print(f"scene {name}, version {saved.number}")
+    print_answer(saved, f"scene {name}, version {saved.number}", json_=json_)
 
 
 def print_bodies(scene: dict[str, Any]) -> None:

@@ -8,6 +8,8 @@ from typing import Annotated
 import typer
 
 from teachpath.commands.audit import note
+from teachpath.commands.options import Json
+from teachpath.commands.printing import print_answer
 
 app = typer.Typer(help="The database of a station.", no_args_is_help=True)
 
@@ -21,6 +23,7 @@ def store() -> None:
 def copy(
     source: Annotated[str, typer.Argument(metavar="FROM", help="Data folder, or URL of a database.")],
     target: Annotated[str, typer.Argument(metavar="TO", help="Data folder, or URL of a database without rows.")],
+    json_: Json = False,
 ) -> None:
     """Copy all rows from one database into an empty one, compared by their counts and hashes.
 
@@ -45,6 +48,6 @@ def copy(
         if "://" not in place:
             said = f"copy all rows from {without_password(source)} to {without_password(target)}"
             note(Settings(store=StoreSettings(data_dir=place)), said)
-    for name, count in counts.items():
-        print(f"{count:8} {name}")
-    print(f"{sum(counts.values()):8} rows, the same in both")
+    total = sum(counts.values())
+    tables = [f"{count:8} {name}" for name, count in counts.items()]
+    print_answer({"rows": total, "tables": counts}, *tables, f"{total:8} rows, the same in both", json_=json_)

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from teachpath.commands.audit import note
-from teachpath.commands.options import Config, Data, settings_of
+from teachpath.commands.options import Config, Data, Json, settings_of
+from teachpath.commands.printing import print_answer
 from teachpath.errors import UnusableInput
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def init(
     address: Annotated[list[str] | None, typer.Option(help="IP address of the station; may be repeated.")] = None,
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Make a certificate for the web port, or renew it, and an authority that vouches for it.
 
@@ -58,13 +60,24 @@ def init(
     known_as = hashlib.sha256(str(folder.absolute()).encode()).hexdigest()[:16]
     write_private(authorities_folder() / f"{known_as}.pem", authority)
     note(settings, f"make a certificate for {', '.join(hosts)}")
-    print(f"certificate valid until {expiry:%Y-%m-%d}, for {', '.join(hosts)}")
-    print(f"authority {'made' if made else 'as before'}: {folder / files.AUTHORITY}.pem")
-    print(f"fingerprint (SHA-256): {fingerprint(authority)}")
-    print("Devices trust the station when they trust that file: the page offers it, with the steps, at /authority.")
     missing = [host for host in hosts if host not in (*LOOPBACK, *settings.web.hosts, settings.web.host)]
+    said = {
+        "expires_ns": round(expiry.timestamp()) * 1_000_000_000,
+        "hosts": hosts,
+        "missing_hosts": missing,
+        "authority": f"{folder / files.AUTHORITY}.pem",
+        "authority_made": made,
+        "fingerprint": fingerprint(authority),
+    }
+    sentences = [
+        f"certificate valid until {expiry:%Y-%m-%d}, for {', '.join(hosts)}",
+        f"authority {'made' if made else 'as before'}: {said['authority']}",
+        f"fingerprint (SHA-256): {said['fingerprint']}",
+        "Devices trust the station when they trust that file: the page offers it, with the steps, at /authority.",
+    ]
     if missing:
-        print(f"It answers under those names only that web.hosts lists; not there yet: {', '.join(missing)}")
+        sentences.append(f"It answers under those names only that web.hosts lists; not there yet: {', '.join(missing)}")
+    print_answer(said, *sentences, json_=json_)
 
 
 def fingerprint(authority: str) -> str:

@@ -11,7 +11,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, opened_store, settings_of
-from teachpath.commands.printing import print_columns, print_json
+from teachpath.commands.printing import print_answer, print_columns, print_json
 from teachpath.errors import UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.tokens import TOKEN_VARIABLE, token_path, write_token
@@ -32,6 +32,7 @@ def create(
     ] = "",
     config: Config = None,
     data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Make a token for a program, and print it this once.
 
@@ -48,13 +49,15 @@ def create(
     note(settings, f"create token {name}, {' '.join(role)}, for {days:g} days")
     if keep:
         write_token(token_path(keep), token)
-        print(f"token {name} is in {token_path(keep)}, where this user's programs look for it")
+        said = {"file": str(token_path(keep))}
+        sentence = f"token {name} is in {token_path(keep)}, where this user's programs look for it"
     else:
-        print(token)
+        said, sentence = {"token": token}, token
         print(
             f"Give it to the program as variable {TOKEN_VARIABLE}; it is kept as a hash, and never told again.",
             file=sys.stderr,
         )
+    print_answer(_described(kept) | said, sentence, json_=json_)
     if settings.auth.mode == "none":
         print("The station does not ask for it yet: set auth.mode to token.", file=sys.stderr)
 
@@ -73,14 +76,17 @@ def list_(config: Config = None, data: Data = None, json_: Json = False) -> None
 
 @app.command("revoke")
 def revoke(
-    name: Annotated[str, typer.Argument(help="Of the token.")], config: Config = None, data: Data = None
+    name: Annotated[str, typer.Argument(help="Of the token.")],
+    config: Config = None,
+    data: Data = None,
+    json_: Json = False,
 ) -> None:
     """Revoke a token; a second later a running service refuses it and ends what was opened with it."""
     settings = settings_of(config, data)
     with opened_store(settings) as store:
         store.access_tokens.revoke(name, time.time_ns())
     note(settings, f"revoke token {name}")
-    print(f"token {name} is revoked")
+    print_answer({"name": name, "state": "revoked"}, f"token {name} is revoked", json_=json_)
 
 
 def capabilities(roles: list[str]) -> tuple[Capability, ...]:

@@ -1,5 +1,6 @@
 """run --check judges by the arm that a signed plan names, else by the one that is configured."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -69,9 +70,13 @@ def signed(slow: Plan) -> Plan:
 
 
 def test_a_recording_is_judged_by_the_arm_of_its_plan(tmp_path: Path, signed: Plan) -> None:
-    said = judged(recorded(tmp_path, signed, [setpoints(signed)]))  # by the default arm: millimetres off its path
+    file = recorded(tmp_path, signed, [setpoints(signed)])
+    said = judged(file)  # by the default arm: millimetres off its path
     assert "allowed 0.25 m/s" in said
     assert "keeps every limit and the path" in said
+    told = json.loads(CliRunner().invoke(app, ["run", "--check", str(file), "--json"]).stdout)
+    assert (told["file"], told["faults"]) == (str(file), [])
+    assert all(sentence in said for sentence in told["measured"])
 
 
 def test_where_setpoints_came_late_a_recording_is_judged_from_rest_to_rest(tmp_path: Path, signed: Plan) -> None:
