@@ -14,7 +14,7 @@ from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor, WayToRes
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint, Segment, plan_return_path, plan_segments
 from teachpath.motion.planning.digest import verify
 from teachpath.motion.settings import MotionSettings
-from teachpath.motion.timing.jog import jog_trajectory, node_length, time_at_length
+from teachpath.motion.timing.jog import node_length, time_at_length
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
 
@@ -65,8 +65,7 @@ class PlanProgram:
         self._held = self.waiting = False
         self._period = period
         self._elapsed = self.arc_length = 0.0
-        still = np.zeros(6)
-        self.state = MotionState(np.array(start_q, dtype=np.float64), still, still, False)
+        self.state = MotionState(np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6), False)
         self._segment: Segment | None = None
         self._governor: Governor | None = None  # of the segment
         self._detour: Detour | None = None
@@ -187,9 +186,8 @@ class PlanProgram:
             raise Conflict("the arm still moves; hold it first, then step")
         done = self.arc_length
         goal = node_length(self._plan.lengths, done, nodes) if nodes else done + length
-        end_time = time_at_length(segment.trajectory, min(max(goal, 0.0), self._length))
         begin = governor.tau if self._detour is None else time_at_length(segment.trajectory, done)
-        return Detour("", (jog_trajectory(segment.trajectory, begin, end_time, 1.0 / self._period),), end_time)
+        return Detour.of_step(segment.trajectory, begin, min(max(goal, 0.0), self._length), 1.0 / self._period)
 
     def plan_return(self, start_q: Array) -> Detour:
         """Plan the way back from `start_q` (6,) to where the arm was held; raises PathRefused when it is not free."""

@@ -16,6 +16,7 @@ from teachpath.motion.execution.governor import Governor
 from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.planning.torque_limited import move_within_torques
 from teachpath.motion.settings import MotionSettings
+from teachpath.motion.timing.jog import jog_trajectory, time_at_length
 from teachpath.motion.timing.joint_moves import joint_waypoints, placed_load, waypoints_home
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from teachpath.records import Plan
@@ -47,6 +48,21 @@ class Detour:
     name: str
     trajectories: tuple[TimedTrajectory, ...]
     end_time: float | None = None
+
+    @classmethod
+    def of_step(cls, trajectory: TimedTrajectory, begin: float, length: float, rate: float) -> Detour:
+        """Plan a step along a trajectory, from rest to rest.
+
+        Args:
+            begin: plan time at which it begins [s].
+            length: arc length at which it ends [m].
+            rate: setpoints a second [Hz].
+
+        Raises:
+            Conflict: the trajectory ends where it begins.
+        """
+        end_time = time_at_length(trajectory, length)
+        return cls("", (jog_trajectory(trajectory, begin, end_time, rate),), end_time)
 
     @property
     def is_step(self) -> bool:
