@@ -53,6 +53,7 @@ def measure(*, repeats: int, seconds: float) -> list[Figure]:
                 given_up = float(sum(run.state == "faulted" for run in runs))
                 figures.append(Figure(f"executions given up of {repeats}, {load_}", (given_up,), "executions"))
             figures += teleoperation.measure(station, endpoint, seconds=min(seconds, 20.0))
+            figures += teleoperation.planning_slices(samples=500)
             executor = station.wait_for_arm().executor
             print(f"the executor says: {executor and executor.scheduling}\n", flush=True)
             return figures

@@ -1,15 +1,28 @@
-"""Live teleoperation on a served station: how soon a setpoint answers a hand."""
+"""Live teleoperation: how soon a setpoint of a served station answers a hand, and what planning takes of a period.
 
+The second alone, on a hand that wanders at random: `python -m tests.bench.teleoperation`.
+"""
+
+import gc
 import math
 import time
 
+import numpy as np
+
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.collision.builtin_scenes import paper_scene
+from teachpath.motion.collision.collision_model import CollisionModel
+from teachpath.motion.execution.teleop_follower import TeleopFollower
+from teachpath.motion.settings import MotionSettings
 from teachpath_client import HandReading, Link, Station
 from teachpath_proto.keys import Keys
-from tests.bench.report import Figure, against
+from tests.bench.report import Figure, against, machine, print_report
 
 PERIOD = 0.02  # [s] between two samples: 50 Hz
+CONTROL_PERIOD = 0.004  # [s]
 CLUTCH = 4
 TRACKER = "bench-hand"
+STEP, TURN_AFTER, REACH = 0.02, 10, 0.1  # [m] of the wandering hand a sample, samples in one direction, and [m] around
 
 
 def measure(station: Station, endpoint: str, *, seconds: float) -> list[Figure]:
@@ -36,3 +49,38 @@ def _show(link: Link, seconds: float) -> None:
         reading = HandReading(number * PERIOD, position, buttons=CLUTCH if number > 10 else 0)
         publisher.put(reading.message(number, time.time_ns()).SerializeToString())
         time.sleep(max(begin + number * PERIOD - time.monotonic(), 0.0))
+
+
+def planning_slices(*, samples: int) -> list[Figure]:
+    """Return what a slice of planning takes of the processor while a hand wanders for so many samples."""
+    rng, hand, taken = np.random.default_rng(0), np.zeros(3), []
+    follower = TeleopFollower(
+        CollisionModel(paper_scene(), Arm.of_variant()), np.array(MotionSettings().home), MotionSettings()
+    )
+    follower.engage(hand)
+    gc.disable()  # as in the executor
+    for number in range(samples):
+        if number % TURN_AFTER == 0:
+            way = rng.normal(0.0, STEP, 3)
+        hand = np.clip(hand + way, -REACH, REACH)
+        follower.set_hand(hand, number + 1)
+        for _ in range(round(PERIOD / CONTROL_PERIOD)):
+            follower.step()
+            began = time.thread_time()
+            follower.advance_planning()
+            taken.append(1e3 * (time.thread_time() - began))
+    gc.enable()
+    period = 1e3 * CONTROL_PERIOD
+    return [
+        against(f"slice of planning {name}", [value], "ms", name="control period", value=period)
+        for name, value in (
+            ("p50", float(np.median(taken))),
+            ("p99", float(np.percentile(taken, 99))),
+            ("at most", max(taken)),
+        )
+    ]
+
+
+if __name__ == "__main__":
+    print(machine())
+    print_report("The live hand", planning_slices(samples=500))

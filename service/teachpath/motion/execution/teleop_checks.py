@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import Final
 
 import numpy as np
@@ -41,17 +42,49 @@ class TorqueCheck:
         self._dynamics = [Dynamics(model.arm, each) for each in held]
         self._torque = model.arm.limits.torque
 
-    def __call__(self, motion: ConstantJerkMotion) -> str:
-        """Say which motor is too weak at some moment of a motion, or nothing."""
-        return next(filter(None, (self._weakness(motion, dynamics) for dynamics in self._dynamics)), "")
-
-    def _weakness(self, motion: ConstantJerkMotion, dynamics: Dynamics) -> str:
-        for stride in TORQUE_STRIDES:
+    def __call__(self, motion: ConstantJerkMotion, stride: int) -> str:
+        """Say which motor may be too weak at some moment of a motion, by one of `TORQUE_STRIDES`, or nothing."""
+        for dynamics in self._dynamics:
             bounds = dynamics.motion_bounds(motion.states, motion.turns(), motion.period, stride)
             uses = (bounds / self._torque).max(axis=0)
-            if uses.max() <= 1.0:
-                return ""
-        return f"the motor of joint {1 + int(np.argmax(uses))} is too weak there for the arm and what it carries"
+            if uses.max() > 1.0:
+                joint = 1 + int(np.argmax(uses))
+                return f"the motor of joint {joint} is too weak there for the arm and what it carries"
+        return ""
+
+
+class MotionCheck:
+    """Proves a motion for the motors and clear of the scene, in slices of about a millisecond.
+
+    Args:
+        motion: to be proved.
+        torque_check: of the scene.
+        swept_check: of the motion.
+    """
+
+    def __init__(self, motion: ConstantJerkMotion, torque_check: TorqueCheck, swept_check: SweptCheck) -> None:
+        self._motion, self._torque_check, self._swept_check = motion, torque_check, swept_check
+        self._strides = deque(TORQUE_STRIDES)  # by which the motors are still to be proved
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the whole motion is proved."""
+        return self._swept_check.is_done and not self._strides
+
+    @property
+    def nearest(self) -> str:
+        """What is nearest where the motion was measured last, in words; empty where nothing is near."""
+        return self._swept_check.nearest
+
+    def advance(self, count: int) -> str:
+        """Do a slice, in which at most `count` configurations are measured; say what stands in the way, or nothing."""
+        if self._strides:
+            weak = self._torque_check(self._motion, self._strides.popleft())
+            if not self._strides:  # the close bound takes a slice of its own
+                return weak
+            if not weak:
+                self._strides.clear()
+        return "" if self._swept_check.is_done else self._swept_check.advance(count)
 
 
 class SweptCheck:

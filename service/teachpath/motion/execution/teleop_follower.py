@@ -19,7 +19,7 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
-from teachpath.motion.execution.teleop_checks import SweptCheck, TorqueCheck, limit_passed
+from teachpath.motion.execution.teleop_checks import MotionCheck, SweptCheck, TorqueCheck, limit_passed
 from teachpath.motion.execution.teleop_goal import (
     MIN_TURN,
     ReachableGoal,
@@ -233,8 +233,9 @@ class TeleopFollower:
             yield
         else:
             return
-        check = SweptCheck(motion.joints, self._model, self.load, self._settings)
-        near = limit_passed(motion.joints.hull(), arm) or self._torque_check(motion.joints)
+        swept_check = SweptCheck(motion.joints, self._model, self.load, self._settings)
+        check = MotionCheck(motion.joints, self._torque_check, swept_check)
+        near = limit_passed(motion.joints.hull(), arm)
         while not (near or check.is_done) and self._cycle < begins - 1:
             yield
             near = check.advance(CHECKS_PER_SLICE)
