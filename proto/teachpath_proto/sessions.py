@@ -10,8 +10,13 @@ import zenoh
 
 from teachpath_proto.logins import Login
 
-# Nothing leaves the machine unasked: no multicast, no gossip.
-ALONE: Mapping[str, object] = {"scouting/multicast/enabled": False, "scouting/gossip/enabled": False}
+# Nothing leaves the machine unasked: no multicast, no gossip. Nor do messages go through shared memory: to prepare it
+# at the first long message makes setpoints late, and a process that is killed leaves its files behind.
+ALONE: Mapping[str, object] = {
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+    "transport/shared_memory/enabled": False,
+}
 TLS = "transport/link/tls"
 
 

@@ -47,6 +47,7 @@ from teachpath.offline.lock import StationLock
 from teachpath.offline.staging import abandoned_notes
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.periodic_thread import Startable, Stoppable
+from teachpath.realtime import realtime_threads
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.guidance import GuidanceThread, read_course
 from teachpath.recorder.queries import RecorderQueries
@@ -89,7 +90,8 @@ class Station:
             self._authority = bool(self.certificate and self.certificate.authority)
             self._signing_key = SigningKey(prepare_signing_key(settings.bus.endpoint))
             self._access = prepare_access(settings.bus)
-            self.bus: Bus = listen_on_bus(settings.bus, self._access)
+            with realtime_threads():
+                self.bus: Bus = listen_on_bus(settings.bus, self._access)
             on_failure.pop_all()
         self.keys = Keys(settings.bus.prefix)
         self._started = time.monotonic()

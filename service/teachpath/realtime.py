@@ -1,13 +1,15 @@
-"""Real-time scheduling of the thread that paces an arm, or the next best where the system refuses it."""
+"""Real-time scheduling of what paces an arm and of what brings its setpoints, or the next best where it is refused."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Final
 
 EXECUTOR_PRIORITY: Final = 50  # of SCHED_FIFO, 1 to 99
 SIMULATOR_PRIORITY: Final = 40
+MESSAGE_PRIORITY: Final = 30  # of threads that carry messages: they may not delay the loops that they serve
 NICE: Final = -10  # niceness where real-time scheduling is refused; that of others is 0, and lower goes first
 ADVICE: Final = "allow it by `USER - rtprio {0}` in /etc/security/limits.conf, or by LimitRTPRIO={0} in a systemd unit"
 
@@ -43,3 +45,33 @@ def request_realtime(
     except (AttributeError, OSError):
         return f"{refused}: the loop shares the processor, watch its lateness; {advice}"
     return f"{refused}, but nice {NICE}: watch the loop's lateness; {advice}"
+
+
+def set_inherited_fifo(priority: int) -> None:
+    """Run this thread, and what it starts later, before all ordinary ones."""
+    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+
+
+@contextmanager
+def realtime_threads(wanted: bool = True, *, fifo: Callable[[int], None] = set_inherited_fifo) -> Iterator[None]:
+    """Run the threads that this one starts meanwhile, and those that they start, before all ordinary ones.
+
+    It is for the threads of a session on the bus. A setpoint passes through several of them in three processes; on a
+    busy machine each would wait for its turn, and the arm come to rest. Where the system refuses real-time scheduling
+    they are ordinary threads, as `request_realtime` says for the loops.
+
+    Args:
+        wanted: whether to ask for it.
+        fifo: asks for it.
+    """
+    try:
+        before = os.sched_getscheduler(0), os.sched_getparam(0)
+        if wanted:
+            fifo(MESSAGE_PRIORITY)
+    except (AttributeError, OSError):
+        wanted = False
+    try:
+        yield
+    finally:
+        if wanted:
+            os.sched_setscheduler(0, *before)

@@ -21,6 +21,7 @@ from tests.bench import (
     plans,
     recording,
     recording_load,
+    setpoint_delay,
     starting,
     stop_latency,
     timing,
@@ -67,6 +68,7 @@ def main() -> None:
         "A served station: jobs in their process, executor and simulated arm in theirs",
         motion.measure(repeats=1 if quick else 3, seconds=2.0 if quick else math.inf),
     )
+    print_report("Setpoints on a busy machine", setpoint_delay.measure(seconds=5.0 if quick else 15.0))
     print_report("A stop while the station is busy", stop_latency.measure(stops=100 if quick else 600))
     print_report("A doctor that is killed and run again", doctor_kills.measure(count=20 if quick else 200))
     print_report("The editor in the page", page.measure(drags=5 if quick else 20))

@@ -1,8 +1,21 @@
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
 
 import pytest
 
-from teachpath.realtime import NICE, request_realtime
+from teachpath.realtime import (
+    EXECUTOR_PRIORITY,
+    MESSAGE_PRIORITY,
+    NICE,
+    SIMULATOR_PRIORITY,
+    realtime_threads,
+    request_realtime,
+    set_inherited_fifo,
+)
+
+T = TypeVar("T")
 
 
 def refuse(_: int) -> None:
@@ -34,3 +47,37 @@ def test_a_system_without_either_is_no_error() -> None:
         raise AttributeError("sched_setscheduler")
 
     assert "no real-time scheduling" in request_realtime(40, fifo=missing, nice=missing)
+
+
+def in_new_thread(function: Callable[[], T]) -> T:
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(function).result()
+
+
+def scheduling() -> tuple[int, int]:
+    return os.sched_getscheduler(0), os.sched_getparam(0).sched_priority
+
+
+def scheduled(wanted: bool, fifo: Callable[[int], None] = set_inherited_fifo) -> list[tuple[int, int]]:
+    """Return how threads are scheduled: one before, one that starts meanwhile, one that this one starts, one later."""
+
+    def ask() -> list[tuple[int, int]]:
+        before = scheduling()
+        with realtime_threads(wanted, fifo=fifo):
+            meanwhile = in_new_thread(lambda: [scheduling(), in_new_thread(scheduling)])
+        return [before, *meanwhile, scheduling()]
+
+    return in_new_thread(ask)
+
+
+def test_threads_that_are_started_meanwhile_run_before_ordinary_ones_but_not_before_the_loops() -> None:
+    granted = in_new_thread(lambda: request_realtime(MESSAGE_PRIORITY)).startswith("real-time scheduling")
+    ordinary = in_new_thread(scheduling)
+    first = (os.SCHED_FIFO, MESSAGE_PRIORITY) if granted else ordinary
+    assert scheduled(wanted=True) == [ordinary, first, first, ordinary]
+    assert scheduled(wanted=False) == [ordinary] * 4
+    assert MESSAGE_PRIORITY < SIMULATOR_PRIORITY < EXECUTOR_PRIORITY
+
+
+def test_a_refusal_leaves_them_ordinary() -> None:
+    assert len(set(scheduled(wanted=True, fifo=refuse))) == 1

@@ -82,13 +82,15 @@ def executor(config: Config = None, attached: Attached = False) -> None:
     from teachpath.io.bus import open_bus
     from teachpath.io.signing_key import read_signing_key
     from teachpath.motion.planning.signature import SigningKey
+    from teachpath.realtime import realtime_threads
 
     given = _instructions(config, attached, Role.EXECUTOR)
     settings = given.settings
     key = SigningKey(given.signing_key or read_signing_key(settings.bus.endpoint))
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
-        bus = open_bus(settings.bus, given.login)
+        with realtime_threads(settings.executor.realtime):
+            bus = open_bus(settings.bus, given.login)
         try:
             Executor(
                 bus,
@@ -110,16 +112,15 @@ def simulator(config: Config = None, attached: Attached = False) -> None:
     """
     from teachpath.commands.serving import until_signalled
     from teachpath.io.bus import open_bus
-    from teachpath.realtime import SIMULATOR_PRIORITY, request_realtime
+    from teachpath.realtime import realtime_threads
     from teachpath.simulator.loop import Simulator
 
     given = _instructions(config, attached, Role.ROBOT)
     settings = given.settings
     with until_signalled() as stop:
         _leave_with_parent(stop, attached)
-        bus = open_bus(settings.bus, given.login)
-        if settings.simulator.realtime:
-            log.info("%s", request_realtime(SIMULATOR_PRIORITY))
+        with realtime_threads(settings.simulator.realtime):
+            bus = open_bus(settings.bus, given.login)
         try:
             Simulator(
                 bus,

@@ -92,12 +92,15 @@ class CommandHandler:
         self.current: Execution | None = None
         self.pending: deque[Callable[[Execution], None]] = deque()
 
+    def receive_stops(self) -> Handle:
+        """Receive the stops that are put from now on; the control loop obeys them."""
+        return self._bus.subscribe(self._keys.executor_stop, lambda _, payload: self._received_stops.append(payload))
+
     def serve(self) -> list[Handle]:
         """Answer commands, stops and lease requests from now on."""
         return [
             self._bus.serve(self._keys.executor_command, self.answer),
             self._bus.serve(self._keys.executor_stop, self._answer_stop),
-            self._bus.subscribe(self._keys.executor_stop, lambda _, payload: self._received_stops.append(payload)),
             self._bus.serve(self._keys.executor_lease, self._answer_lease),
         ]
 

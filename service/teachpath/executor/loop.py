@@ -28,7 +28,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import warm_up
 from teachpath.motion.planning.signature import SigningKey
 from teachpath.motion.settings import MotionSettings
-from teachpath.realtime import EXECUTOR_PRIORITY, request_realtime
+from teachpath.realtime import EXECUTOR_PRIORITY, realtime_threads, request_realtime
 from teachpath.records import ExecutorStatus, JointState
 from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState
@@ -99,9 +99,13 @@ class Executor:
     def run(self, stop: threading.Event) -> None:
         """Stream setpoints until `stop` is set; then bring the arm to rest on its path and return."""
         warm_up(self._period, self._arm)
-        handles = [
-            self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),
-            self._bus.watch(self._keys.alive("robot", self._robot), self._joint_states.on_liveliness),
+        with realtime_threads(self._settings.realtime):
+            handles = [
+                self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),
+                self._bus.watch(self._keys.alive("robot", self._robot), self._joint_states.on_liveliness),
+                self._command_handler.receive_stops(),
+            ]
+        handles += [
             *self._command_handler.serve(),
             self._bus.announce(self._keys.alive("executor", self._robot)),
         ]

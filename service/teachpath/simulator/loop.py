@@ -18,6 +18,7 @@ from teachpath.io import documents, wire
 from teachpath.io.bus import Bus
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
+from teachpath.realtime import SIMULATOR_PRIORITY, realtime_threads, request_realtime
 from teachpath.records import JointState, Scene
 from teachpath.simulator.arm import STEP_NS, SimulatedArm
 from teachpath.simulator.settings import SimulatorSettings
@@ -77,12 +78,17 @@ class Simulator:
     def run(self, stop: threading.Event) -> None:
         """Advance in real time until `stop` is set."""
         robot = self._robot
-        handles = [
-            self._bus.subscribe(self._keys.setpoint(robot), self._receive),
-            self._bus.subscribe(self._keys.executor_status, lambda _, payload: self._statuses.append(payload)),
+        with realtime_threads(self._settings.realtime):
+            handles = [
+                self._bus.subscribe(self._keys.setpoint(robot), self._receive),
+                self._bus.subscribe(self._keys.executor_status, lambda _, payload: self._statuses.append(payload)),
+            ]
+        handles += [
             self._bus.serve(self._keys.reset(robot), self.reset),
             self._bus.announce(self._keys.alive("robot", robot)),
         ]
+        if self._settings.realtime:
+            log.info("%s", request_realtime(SIMULATOR_PRIORITY))
         try:
             due = self._clock()
             while not stop.is_set():

@@ -25,7 +25,7 @@ from teachpath_proto.keys import Keys
 ARM = Arm.of_variant()
 
 KEYS = Keys()
-SETTINGS = SimulatorSettings()
+SETTINGS = SimulatorSettings(realtime=False)
 HOME = np.array(MotionSettings().home)
 START = 1_700_000_000_000_000_000
 PERIOD_NS = 4_000_000
