@@ -22,7 +22,7 @@ class ArmRest:
     def __init__(self, max_speed: float, timeout: float) -> None:
         self._max_speed = max_speed
         self._timeout_ns = round(timeout * 1e9)
-        self._since: int | None = None  # when the nominal motion was first seen at rest [ns of the loop's clock]
+        self._since: int | None = None  # when the nominal motion was first seen at rest [ns]
         self.is_reached = False
         self.problem = ""
 
@@ -36,7 +36,7 @@ class ArmRest:
         Args:
             arm: its newest joint state; None when it is silent.
             has_taken_standstill: whether it has taken up a setpoint of the present standstill, or can follow none.
-            now: [ns of the loop's clock].
+            now: for how long the loop has listened to the arm in all [ns].
         """
         if self._since is None:
             self._since = now

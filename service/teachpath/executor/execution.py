@@ -117,14 +117,14 @@ class Execution:
         """Tell whether the arm has taken up a setpoint of the present standstill."""
         return arm.execution == self.id and arm.cycle >= self._sent_count - self._rest_setpoints
 
-    def watch_rest(self, arm: JointState | None, due: int) -> None:
-        """Look whether the arm rests, once the nominal motion does; `arm` is None while it is silent."""
+    def watch_rest(self, arm: JointState | None, now: int) -> None:
+        """Look whether the arm rests, once the nominal motion does; `arm` is None while it is silent, `now` in ns."""
         if not self.program.at_rest:
             self._arm_rest.begin_again()
             return
         cannot_follow = arm is not None and bool(self.displacement or arm.inability)
         taken = cannot_follow or (arm is not None and self.arm_has_stopped(arm))
-        self._arm_rest.update(arm, has_taken_standstill=taken, now=due)
+        self._arm_rest.update(arm, has_taken_standstill=taken, now=now)
 
     def untaken(self, arm: JointState) -> int:
         """Return how many setpoints were sent that the arm has not taken up yet."""

@@ -16,10 +16,14 @@ from teachpath.records import Array, JointState
 log = logging.getLogger(__name__)
 
 REFUSAL_INTERVAL_NS: Final = 1_000_000_000  # [ns] between two words in the log about states that cannot be used
+MAX_LISTENED_NS: Final = 50_000_000  # [ns] of silence that one look counts at most: who oversleeps hears nothing
 
 
 class JointStateMonitor:
     """Keeps the newest joint state of one arm.
+
+    An arm is silent for as long as the control loop has listened in vain: a loop that oversleeps, and with it the
+    threads that receive, knows nothing of the arm meanwhile.
 
     Args:
         robot: name of the arm.
@@ -28,6 +32,7 @@ class JointStateMonitor:
 
     Attributes:
         has_lost_driver: whether an announced driver of the arm left the bus since this was last set to False.
+        listened_ns: for how long the control loop has listened in all, at its newest look [ns].
     """
 
     def __init__(self, robot: str, silence: float, clock: Callable[[], int]) -> None:
@@ -35,10 +40,12 @@ class JointStateMonitor:
         self._silence = silence
         self._clock = clock
         self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
-        self._latest: tuple[int, JointState] | None = None
+        self._latest: tuple[int, int, JointState] | None = None  # when it came, `listened_ns` then, and the state
+        self._looked_ns = clock()
         self._refused_ns = -REFUSAL_INTERVAL_NS  # when a joint state was last said to be refused
         self._lost_ns = -1  # when its driver left: what came before is no state of the next one
         self.has_lost_driver = False
+        self.listened_ns = 0
 
     def on_liveliness(self, _: str, alive: bool) -> None:
         """Take note of a driver that comes or goes."""
@@ -49,11 +56,17 @@ class JointStateMonitor:
         """Take a message from the bus; `poll` decodes it, on the caller's thread."""
         self._payloads.append((self._clock(), payload))
 
+    def look(self, now: int) -> None:
+        """Look for a message at `now` [ns]; called in each cycle of the control loop."""
+        self.listened_ns += min(now - self._looked_ns, MAX_LISTENED_NS)
+        self._looked_ns = now
+        self.poll()
+
     def poll(self) -> None:
         """Decode the newest message, if one has come since the last call."""
         try:
             came_ns, payload = self._payloads.pop()
-            self._latest = (came_ns, wire.decode_state(payload))
+            self._latest = (came_ns, self.listened_ns, wire.decode_state(payload))
         except IndexError:
             return
         except UnusableInput as error:
@@ -62,10 +75,12 @@ class JointStateMonitor:
                 self._refused_ns = came_ns
 
     def latest(self, now: int) -> tuple[float, JointState] | None:
-        """Return the age of the present driver's newest joint state at `now` [s] and the state, or None without one."""
-        if self._latest is None or self._latest[0] <= self._lost_ns:
+        """Return how long nothing was heard of the present driver at `now` [s], and its newest joint state, if any."""
+        newest = self._latest
+        if newest is None or newest[0] <= self._lost_ns:
             return None
-        return (now - self._latest[0]) / 1e9, self._latest[1]
+        came_ns, listened_ns, state = newest
+        return min(now - came_ns, self.listened_ns - listened_ns) / 1e9, state
 
     def current(self) -> JointState:
         """Return the arm's present joint state.
@@ -75,12 +90,13 @@ class JointStateMonitor:
             Unreachable: the arm is silent.
         """
         self.poll()
-        latest = self.latest(self._clock())
-        if latest is None or latest[0] > self._silence:
+        newest, now = self._latest, self._clock()
+        if newest is None or newest[0] <= self._lost_ns or now - newest[0] > self._silence * 1e9:
             raise Unreachable(f"no joint state from {self.robot}; is the simulator or the arm's driver running?")
-        if latest[1].inability:
-            raise Conflict(latest[1].inability)
-        return latest[1]
+        state = newest[2]
+        if state.inability:
+            raise Conflict(state.inability)
+        return state
 
     def resting_q(self, max_speed: float) -> Array:
         """Return the configuration (6,) in which the arm rests [rad].

@@ -131,7 +131,7 @@ class Executor:
                 handle.close()
 
     def _cycle(self, due: int) -> None:
-        self._joint_states.poll()
+        self._joint_states.look(due)
         self._command_handler.obey_stops()
         current = self._command_handler.current
         if current is not None and not (current.has_begun or current.is_resting):
@@ -141,7 +141,7 @@ class Executor:
             while pending:
                 pending.popleft()(current)
             self._supervise(current, due)
-            current.watch_rest(self._speaking_arm(due), due)
+            current.watch_rest(self._speaking_arm(due), self._joint_states.listened_ns)
             if current.displacement or current.arm_stops:
                 current.skip_period()
             else:

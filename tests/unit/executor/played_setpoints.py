@@ -25,7 +25,10 @@ def at_once(cycle: int) -> list[float]:
 
 
 class PlayedBench(Bench):
-    """An executor whose setpoints come late, doubled or not at all to an arm that plays them."""
+    """An executor whose setpoints come late, doubled or not at all to an arm that plays them.
+
+    While it oversleeps it hears nothing, as a process that was stopped.
+    """
 
     def __init__(
         self, arrivals: Arrivals = at_once, motion: MotionSettings | None = None, arm: Arm | None = None
@@ -34,11 +37,13 @@ class PlayedBench(Bench):
         self._arrivals = arrivals
         self._coming: list[tuple[float, int, Setpoint]] = []
         self._heard = 0
+        self._hears = True
         self.player = SetpointPlayer(np.array((motion or MOTION).home), delay=DELAY)
         self.played: list[np.ndarray] = []
 
     def sleep(self, duration: float) -> None:
-        end = self.now + round(duration * 1e9) + self.oversleep.pop(len(self.setpoints), 0)
+        overslept = self.oversleep.pop(len(self.setpoints), 0)
+        end, self._hears = self.now + round(duration * 1e9) + overslept, not overslept
         assert end < 60e9, f"stuck before step {self.todo[:1]} in {self.statuses[-1]}"
         while self.now < end:
             self.now += min(STEP_NS, end - self.now)
@@ -58,7 +63,8 @@ class PlayedBench(Bench):
             self.player.add(setpoint, EPOCH + self.now)
         self.player.advance(STEP_NS / 1e9, EPOCH + self.now)
         self.played.append(self.player.target.position)
-        self.bus.publish(KEYS.state("puma560"), wire.encode_state(self.joint_state()))
+        if self._hears:
+            self.bus.publish(KEYS.state("puma560"), wire.encode_state(self.joint_state()))
 
     def joint_state(self) -> JointState:
         player, newest = self.player, self.player.last_reached

@@ -106,7 +106,7 @@ def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[t
     steps, moves = np.diff(log.times), np.any(np.diff(log.positions, axis=0) != 0.0, axis=1)
     uneven = np.abs(steps - period) > PERIOD_TOLERANCE * period
     restarted = np.isin(np.arange(1, len(log.times)), log.restarts)  # with each step
-    rested = np.concatenate([[True], ~moves[:-1]]) | restarted  # before each step
+    rested = np.concatenate([[True], (~moves | restarted)[:-1]]) | restarted  # before each step
     broken = np.flatnonzero(uneven & ~(rested & (steps > period)))
     found = []
     if len(broken):
