@@ -20,6 +20,7 @@
     ├── StorageUnavailable     the data folder or the database cannot be read or written now
     │   └── StorageFull        its disk is full
     └── Unreachable            a process or peer does not answer
+        ├── Unanswered         it is there, and has not answered in time: it may do later what it was asked for
         └── NotStopped         the executor has not confirmed a stop: the arm may be moving
 
 A message names the value, the limit, the place and the way out.
@@ -138,6 +139,10 @@ class StorageFull(StorageUnavailable):
 
 class Unreachable(TeachpathError):
     """A process or peer does not answer."""
+
+
+class Unanswered(Unreachable):
+    """A process or peer is there and has not answered in time; it may do later what it was asked for."""
 
 
 class NotStopped(Unreachable):

@@ -2,13 +2,14 @@
 
 import itertools
 import queue
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import suppress
 
 import pytest
 
-from teachpath.errors import Conflict, TeachpathError, Unreachable
+from teachpath.errors import Conflict, TeachpathError, Unanswered, Unreachable
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
 from teachpath.io.memory_bus import MemoryBus
 from teachpath_client import Link
@@ -89,6 +90,20 @@ def test_answers_queries_and_raises_the_servers_error(ends: tuple[Bus, Bus]) -> 
 def test_says_when_nobody_answers(ends: tuple[Bus, Bus]) -> None:
     with pytest.raises(Unreachable, match="nobody answered t/none"):
         ends[0].ask("t/none", timeout=0.3)
+
+
+def test_says_when_who_is_there_has_not_answered_in_time() -> None:
+    bus, answered = listen_on_bus(BusSettings(endpoint=free_endpoint())), threading.Event()
+
+    def answer(payload: bytes) -> bytes:
+        answered.wait()
+        return payload
+
+    bus.serve("t/slow", answer)
+    with pytest.raises(Unanswered, match=r"t/slow was not answered within 0.2 s"):
+        bus.ask("t/slow", timeout=0.2)
+    answered.set()
+    bus.close()
 
 
 def test_shows_who_is_alive(ends: tuple[Bus, Bus]) -> None:

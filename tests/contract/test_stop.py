@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from teachpath.__main__ import app
+from teachpath.errors import Unanswered
 from teachpath.io import wire
 from teachpath.periodic_thread import PeriodicThread
 from teachpath.records import Command, ExecutorStatus
@@ -15,6 +16,8 @@ from teachpath_client import Station
 from teachpath_client.errors import NotStopped, Refused
 from teachpath_proto.control import ExecutorState
 from tests.contract.desk import Desk, refused
+from tests.contract.test_rest_work import planned
+from tests.waiting import wait_until
 
 MOVING = "execution-moving"
 
@@ -108,3 +111,17 @@ def test_the_command_line_says_so_only_then(desk: Desk, url: str, moving: str) -
         assert said() == "stopped: nothing moves the arm\n"
     with executor(desk, FOLLOWING, HOLDING), pytest.raises(NotStopped):  # which ends with exit status 1
         said()
+
+
+def test_a_start_that_is_not_answered_in_time_is_stopped_should_it_begin_later(desk: Desk) -> None:
+    def answer(_: bytes) -> bytes:
+        raise Unanswered("the executor was not there in time")
+
+    idle = ExecutorStatus()
+    handle = desk.station.bus.serve(desk.station.keys.executor_command, answer)
+    with executor(desk, idle, idle) as puts:
+        refused(desk.post("/executions", {"plan": planned(desk.station, "plan-late")}), 503, "not there in time")
+        newest = desk.get("/executions").json()[0]
+        wait_until(lambda: newest["id"] in [command.execution for command in puts], "it is stopped")
+    handle.close()
+    assert newest["status"]["state"] == "faulted"

@@ -11,13 +11,12 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from typing import Final
 
 import numpy as np
 
-from teachpath.errors import Conflict, TeachpathError, Unreachable, UnusableInput
+from teachpath.errors import Conflict, TeachpathError, UnusableInput
 from teachpath.executor.arm_rest import ArmRest
 from teachpath.executor.execution import Execution
 from teachpath.executor.joint_state_monitor import JointStateMonitor
@@ -25,7 +24,7 @@ from teachpath.executor.lease import ControlLease
 from teachpath.executor.program_factory import PreparedProgram, ProgramFactory
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.unasked_motion import UnaskedMotionDetector, moved_since_order
-from teachpath.io import documents, wire
+from teachpath.io import wire
 from teachpath.io.bus import Bus, Handle
 from teachpath.logs import continue_request
 from teachpath.records import Array, Command, ExecutorStatus, JournalEntry
@@ -36,7 +35,6 @@ from teachpath_proto.keys import Keys
 log = logging.getLogger(__name__)
 
 DEFAULT_OPERATOR: Final = "somebody"  # name of a person who commands without a lease and without a name
-RESET_TIMEOUT: Final = 5.0  # [s] that the simulated arm may take to build a scene
 MAX_WAITING_STOPS: Final = 1000  # stops that were put and not obeyed yet
 STOPS_A_PERIOD: Final = 10  # of them that are obeyed in one cycle of the loop, so that a flood delays no setpoint
 KNOWN_STOPS: Final = 100  # ids of stops whose repeats are not written to the journal
@@ -254,11 +252,13 @@ class CommandHandler:
             self.lease.pop_lost_holder()
             self._joint_states.has_lost_driver = False
             prepared = self._programs.make(command)
-            with suppress(Unreachable):  # only the simulated robot has a scene to put back
-                reset = self._keys.reset(self._joint_states.robot)
-                self._bus.ask(reset, documents.encode(prepared.scene), timeout=RESET_TIMEOUT)
-            with self._lock:
-                self._begin(command.execution, prepared, stops_before)
+            try:
+                self._programs.reset_scene(prepared.scene)
+                with self._lock:
+                    self._begin(command.execution, prepared, stops_before)
+            except BaseException:
+                prepared.program.close()
+                raise
 
     def _check_begin(self, start_q: Array, stops_before: int) -> None:
         """Refuse to begin when a stop came, or the arm has moved, since the execution was ordered: that took time."""
@@ -272,11 +272,7 @@ class CommandHandler:
             raise Conflict(moved_since_order(off))
 
     def _begin(self, execution: str, prepared: PreparedProgram, stops_before: int) -> None:
-        try:
-            self._check_begin(prepared.program.current_q, stops_before)
-        except TeachpathError:
-            prepared.program.close()
-            raise
+        self._check_begin(prepared.program.current_q, stops_before)
         if self.current is not None:
             self.current.program.close()
         self._on_start()

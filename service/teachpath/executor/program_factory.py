@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from teachpath.errors import PathRefused, UnusableInput
+from teachpath.errors import PathRefused, Unanswered, Unreachable, UnusableInput
 from teachpath.executor.certificate_check import CertificateCheck
 from teachpath.executor.grasp_monitor import GraspMonitor
 from teachpath.executor.joint_state_monitor import JointStateMonitor
@@ -28,6 +28,7 @@ from teachpath_proto.keys import Keys
 
 SCALE_RANGE: Final = (0.05, 5.0)  # of the tool's way over the hand's
 SHARE_RANGE: Final = (0.05, 1.0)  # of the joints' limits
+RESET_TIMEOUT: Final = 15.0  # [s] that the simulated arm may take to build a scene, on a busy machine
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,23 @@ class ProgramFactory:
             Unreachable: the arm is silent.
         """
         return self._follow_plan(command) if command.verb == CommandVerb.START else self._follow_hand(command)
+
+    def reset_scene(self, scene: Scene) -> None:
+        """Let the simulated arm put its scene back; the driver of a real arm serves no such key.
+
+        Raises:
+            Unanswered: it has not done so in time, and may do it when the arm moves already.
+        """
+        reset = self._keys.reset(self._joint_states.robot)
+        try:
+            self._bus.ask(reset, documents.encode(scene), timeout=RESET_TIMEOUT)
+        except Unanswered as error:
+            raise Unanswered(
+                f"the simulated arm has not put its object back within {RESET_TIMEOUT:g} s, so nothing starts; is the "
+                "machine busy? start again"
+            ) from error
+        except Unreachable:
+            return
 
     def _follow_plan(self, command: Command) -> PreparedProgram:
         plan = documents.decode(Plan, command.plan)

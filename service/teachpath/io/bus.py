@@ -18,7 +18,7 @@ import zenoh
 import zenoh.ext
 
 from teachpath import errors
-from teachpath.errors import TeachpathError, Unreachable, UnusableSettings
+from teachpath.errors import TeachpathError, Unanswered, Unreachable, UnusableSettings
 from teachpath.io.bus_access import BusAccess, listening_config
 from teachpath.io.bus_config import read_bus_config
 from teachpath.io.bus_settings import BusSettings
@@ -26,6 +26,7 @@ from teachpath_proto.logins import Login
 from teachpath_proto.sessions import joining, listening, open_session
 
 SESSION_ID = re.compile(rb"[0-9a-f]{1,32}")
+TIMED_OUT = b"Timeout"  # what Zenoh says when those who serve a key have not answered in time
 
 Receive = Callable[[str, bytes], None]
 ReceiveWithSource = Callable[[str, bytes, str], None]
@@ -68,7 +69,8 @@ class Bus(Protocol):
         """Query `key` and return the answer.
 
         Raises:
-            Unreachable: nobody answered within `timeout` [s].
+            Unreachable: nobody serves the key.
+            Unanswered: somebody does, and has not answered within `timeout` [s].
             TeachpathError: the one that the answering side raised.
         """
 
@@ -189,7 +191,10 @@ class ZenohBus:
             if reply.ok is not None:
                 return bytes(reply.ok.payload.to_bytes())
             if reply.err is not None:
-                _raise_again(reply.err.payload.to_bytes(), key)
+                payload = reply.err.payload.to_bytes()
+                if payload == TIMED_OUT:
+                    raise Unanswered(f"{key} was not answered within {timeout:g} s; is that part of the service busy?")
+                _raise_again(payload, key)
         raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
 
     def announce(self, key: str) -> Handle:

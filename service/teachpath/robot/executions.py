@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from teachpath.errors import Conflict, NotFound, TeachpathError, UnusableInput
+from teachpath.errors import Conflict, NotFound, TeachpathError, Unanswered, UnusableInput
 from teachpath.io.bus import Bus
 from teachpath.io.documents import encode
 from teachpath.io.store.lists import Execution
@@ -238,6 +238,8 @@ class Executions:
         except TeachpathError as error:
             self._monitor.refuse(key, str(error))
             self._recorder.finish_after(SETTLING_NS)
+            if isinstance(error, Unanswered):  # an executor that is only late would move the arm when nobody expects it
+                self._stopper.send(Command(CommandVerb.STOP, key))
             raise
         finally:
             self._starting.discard(key)

@@ -24,7 +24,7 @@ SLOW_REPEAT_INTERVAL: Final = 0.5  # [s] between two repeats after `CONFIRM_TIME
 
 
 @dataclass(frozen=True)
-class _Stop:
+class PendingStop:
     """A stop that is not confirmed yet."""
 
     command: Command
@@ -69,8 +69,7 @@ class Stopper:
         Raises:
             NotStopped: the status does not show it within `CONFIRM_TIMEOUT`; it is repeated up to `REPEAT_DURATION`.
         """
-        stop = _Stop(replace(command, id=request_number() or uuid.uuid4().hex), is_starting, time.monotonic())
-        self._send_repeatedly(stop)
+        stop = self.send(command, is_starting)
         with self._changed:
             is_confirmed = self._changed.wait_for(lambda: self._is_confirmed(stop), CONFIRM_TIMEOUT)
             self.outcomes["confirmed" if is_confirmed else "not_confirmed"] += 1
@@ -83,6 +82,12 @@ class Stopper:
             assert self._status is not None
             return self._status
 
+    def send(self, command: Command, is_starting: Callable[[], bool] = lambda: False) -> PendingStop:
+        """Send a stop until the executor's status shows it, as `stop` does, and wait for nothing."""
+        stop = PendingStop(replace(command, id=request_number() or uuid.uuid4().hex), is_starting, time.monotonic())
+        self._send_repeatedly(stop)
+        return stop
+
     def close(self) -> None:
         """Repeat no stop any more."""
         with self._changed:
@@ -92,7 +97,7 @@ class Stopper:
         for thread in threads:
             thread.join()
 
-    def _send_repeatedly(self, stop: _Stop) -> None:
+    def _send_repeatedly(self, stop: PendingStop) -> None:
         """Send a stop on a thread of its own, once when an earlier stop of that execution is being repeated."""
         execution = stop.command.execution
         with self._changed:
@@ -102,7 +107,7 @@ class Stopper:
                 self._repeating[execution] = thread
             thread.start()
 
-    def _send(self, stop: _Stop, repeats: bool) -> None:
+    def _send(self, stop: PendingStop, repeats: bool) -> None:
         payload = encode_command(stop.command)
         try:
             while True:
@@ -120,7 +125,7 @@ class Stopper:
                 with self._changed:
                     del self._repeating[stop.command.execution]
 
-    def _is_confirmed(self, stop: _Stop) -> bool:
+    def _is_confirmed(self, stop: PendingStop) -> bool:
         """Tell whether a status that came since the stop was sent shows it."""
         status, execution = self._status, stop.command.execution
         if status is None or self._received < stop.start_time or stop.is_starting():

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from teachpath.errors import Conflict
+from teachpath.errors import Conflict, Unanswered
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.unasked_motion import REST_TIME, SETTLING_TIME
 from teachpath.io.documents import encode
@@ -180,3 +180,21 @@ def test_what_stays_below_the_threshold_or_was_not_seen_is_no_motion(middle: Pla
     bench.run()
     assert bench.unasked == []
     assert {status.unasked_motion for status in bench.statuses} == {""}
+
+
+def test_nothing_starts_while_the_simulated_arm_has_not_put_its_object_back(middle: Plan) -> None:
+    bench = Pushed(middle)
+
+    def reset(_: bytes) -> bytes:
+        raise Unanswered("it is not there yet")
+
+    def start() -> None:
+        with pytest.raises(Unanswered, match="has not put its object back"):
+            bench.start_now()
+
+    bench.bus.serve(KEYS.reset("puma560"), reset)
+    bench.wait(0.1)
+    bench.when(lambda: True, start)
+    bench.when(lambda: True, bench.stop.set)
+    bench.run()
+    assert bench.setpoints == []
