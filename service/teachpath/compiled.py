@@ -34,6 +34,7 @@ def compiled(**options: Any) -> Callable[[F], F]:
     """
 
     def compile_later(function: F) -> F:
+        """Return `function` compiled at its first call; kept in memory alone where no folder can be written."""
         before = _settings.CACHE_DIR
         _settings.CACHE_DIR = str(_place(Path(inspect.getfile(function)).parent, before))
         try:

@@ -73,10 +73,12 @@ def answer_errors(app: FastAPI) -> None:
 
     @app.exception_handler(TeachpathError)
     async def answer(_: Request, error: TeachpathError) -> Response:
+        """Answer with the sentence and the status of an error of ours."""
         return answer_to(error)
 
     @app.exception_handler(RequestValidationError)
     async def name_fields(request: Request, error: RequestValidationError) -> Response:
+        """Answer 422 with each wrong field, its place and what it may be; who may not ask at all is told that."""
         try:
             await require_access(request)  # FastAPI reads parameters and bodies first
         except (NotSignedIn, NotAllowed) as refusal:
@@ -88,23 +90,27 @@ def answer_errors(app: FastAPI) -> None:
 
     @app.exception_handler(HTTPException)
     async def name_place(request: Request, error: HTTPException) -> Response:
+        """Answer an unknown address, a wrong method and the like in a sentence that names the way out."""
         kind = HTTPStatus(error.status_code).phrase
         headers = dict(error.headers or {}) | _allowed(request, error)
         return refuse(error.status_code, _sentence(request, headers, error), kind, headers=headers)
 
     @app.exception_handler(UnicodeEncodeError)
     async def name_text(_: Request, error: UnicodeEncodeError) -> Response:
+        """Answer 422 for a text that no file and no database can hold."""
         sentence = f"the text {error.object[:80]!r} holds half of a surrogate pair; send whole characters"
         return refuse(422, sentence, "UnusableInput")
 
     @app.exception_handler(OSError)
     async def name_disk(_: Request, error: OSError) -> Response:
+        """Answer 507 for a full disk, and the like; raises the error again where storage has no part in it."""
         if (fault := storage_fault(error, "the data folder")) is None:
             raise error
         return refuse(status_of(fault), str(fault), type(fault).__name__)
 
     @app.exception_handler(Exception)
     async def confess(_: Request, error: Exception) -> Response:
+        """Answer 500 for an error that nobody thought of."""
         # the server logs the error itself, with its traceback
         return refuse(500, f"this is a fault of teachpath, please report it: {error!r}", "InternalError")
 

@@ -48,10 +48,12 @@ def help_router(folder: Path) -> APIRouter:
 
     @router.get("/help", dependencies=OPEN)
     def begin(request: Request) -> Response:
+        """Send the reader to the first page."""
         return RedirectResponse(f"{request.scope.get('root_path', '')}/help/index.html")
 
     @router.get("/help/{name:path}", dependencies=OPEN)
     def document(request: Request, name: str) -> Response:
+        """Answer with a file of the site; 404 where it has none of that name, or was not built."""
         path = (root / (name or "index.html")).resolve()
         if not root.is_dir():
             return _missing("the documents were not built here; build them with: make docs")

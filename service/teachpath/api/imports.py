@@ -83,20 +83,25 @@ def imports_router(parts: Parts) -> APIRouter:
         if known := await run_in_threadpool(begun_by, store, task, "import", asdict(order), submitter, key):
             return accepted(known, response)
         parts.jobs.require_room(submitter)
-        folder = await run_in_threadpool(parts.transfers.make)
-        order = replace(order, files=(replace(file, upload=folder.name),))
-        try:
-            await receive_file(request, folder / UPLOAD, name)
-            submit = partial(
-                parts.jobs.submit, task, "import", asdict(order), submitter, who=sender.name, idempotency_key=key
-            )
-            job = await run_in_threadpool(submit)
-        except BaseException:
-            parts.transfers.remove(folder.name)
-            raise
-        return accepted(job, response)
+        return accepted(await _submit(parts, request, task, order, sender.name, submitter, key), response)
 
     return router
+
+
+async def _submit(
+    parts: Parts, request: Request, task: str, order: ImportRequest, who: str, submitter: str, key: str
+) -> Job:
+    """Keep the request's body as the file of the order, and queue its import; no file stays behind a refusal."""
+    folder = await run_in_threadpool(parts.transfers.make)
+    (file,) = order.files
+    order = replace(order, files=(replace(file, upload=folder.name),))
+    try:
+        await receive_file(request, folder / UPLOAD, file.name)
+        submit = partial(parts.jobs.submit, task, "import", asdict(order), submitter, who=who, idempotency_key=key)
+        return await run_in_threadpool(submit)
+    except BaseException:
+        parts.transfers.remove(folder.name)
+        raise
 
 
 async def receive_file(request: Request, file: Path, name: str) -> None:

@@ -39,6 +39,7 @@ class RequestNumbers:
         number, begin = begin_request(), time.monotonic()
 
         async def numbered(message: Message) -> None:
+            """Send a message; the first one of an answer gets the number, and is logged where it changed something."""
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 headers[HEADER] = number

@@ -73,6 +73,28 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         generate_unique_id_function=_operation_id,
     )
     app.state.access = parts.access
+    registry = new_registry()
+    _add_guards(app, parts)
+    app.add_middleware(RequestMetrics, registry=registry)
+    app.add_middleware(RequestNumbers)
+    app.add_middleware(AuditRequests, audit=parts.audit)
+    answer_errors(app)
+    app.include_router(stops_router(parts), prefix=PREFIX)  # never refused for what comes with it
+    closed = [Depends(refuse_unknown)]
+    for router in ROUTERS:
+        app.include_router(router(parts), prefix=PREFIX, dependencies=closed)
+    for socket in (trackers_router, joints_router):
+        app.include_router(socket(parts), prefix=PREFIX)
+    app.include_router(metrics_router(parts, registry))
+    app.include_router(description_router(app))
+    app.include_router(authority_router(parts))
+    for page in pages:
+        app.include_router(page)
+    return app
+
+
+def _add_guards(app: FastAPI, parts: Parts) -> None:
+    """Add what may refuse a request; the last one that is added comes first."""
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     web = parts.settings.web
     hosts = ["127.0.0.1", "localhost", "[::1]", *({web.host} - UNSPECIFIED), *web.hosts]
@@ -87,50 +109,6 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
         app.add_middleware(HttpsOnly)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=hosts)
     app.add_middleware(AnswersAtTheEnd)
-    registry = new_registry()
-    app.add_middleware(RequestMetrics, registry=registry)
-    app.add_middleware(RequestNumbers)
-    app.add_middleware(AuditRequests, audit=parts.audit)
-    answer_errors(app)
-    routers = (
-        tasks_router,
-        imports_router,
-        uploads_router,
-        demonstrations_router,
-        recording_router,
-        exports_router,
-        calibrations_router,
-        jobs_router,
-        results_router,
-        versions_router,
-        curves_router,
-        adaptations_router,
-        scenes_router,
-        objects_router,
-        assessments_router,
-        executions_router,
-        programs_router,
-        control_router,
-        robot_router,
-        station_router,
-        access_router,
-        provider_router,
-        people_router,
-        audit_router,
-        probes_router,
-    )
-    app.include_router(stops_router(parts), prefix=PREFIX)  # never refused for what comes with it
-    closed = [Depends(refuse_unknown)]
-    for router in routers:
-        app.include_router(router(parts), prefix=PREFIX, dependencies=closed)
-    for socket in (trackers_router, joints_router):
-        app.include_router(socket(parts), prefix=PREFIX)
-    app.include_router(metrics_router(parts, registry))
-    app.include_router(description_router(app))
-    app.include_router(authority_router(parts))
-    for page in pages:
-        app.include_router(page)
-    return app
 
 
 def _operation_id(route: APIRoute) -> str:
@@ -162,3 +140,32 @@ def station_router(parts: Parts) -> APIRouter:
         return parts.health()
 
     return router
+
+
+ROUTERS: Final = (  # of the REST API, in the order of its description
+    tasks_router,
+    imports_router,
+    uploads_router,
+    demonstrations_router,
+    recording_router,
+    exports_router,
+    calibrations_router,
+    jobs_router,
+    results_router,
+    versions_router,
+    curves_router,
+    adaptations_router,
+    scenes_router,
+    objects_router,
+    assessments_router,
+    executions_router,
+    programs_router,
+    control_router,
+    robot_router,
+    station_router,
+    access_router,
+    provider_router,
+    people_router,
+    audit_router,
+    probes_router,
+)

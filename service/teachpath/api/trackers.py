@@ -46,11 +46,13 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRou
 
     @router.websocket("/trackers/{name}/samples", dependencies=DEMONSTRATE)
     async def samples(socket: WebSocket, name: str, session: str = "") -> None:
+        """Take the samples of a tracker that `name` names; `session` is the secret by which a page comes back to it."""
         if not await sockets.accept(socket, parameters=("session",)):
             return
         loop, dismissed = asyncio.get_running_loop(), asyncio.Queue[str]()
 
         def leave(why: str) -> None:
+            """Let the socket be closed with a reason; any thread may call it."""
             with suppress(RuntimeError):  # the loop has ended meanwhile
                 loop.call_soon_threadsafe(dismissed.put_nowait, why)
 

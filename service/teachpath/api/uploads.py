@@ -132,6 +132,7 @@ def uploads_router(parts: Parts) -> APIRouter:
     """Return the routes of uploads."""
     router = APIRouter(tags=["tasks"])
     _add_uploads(router, parts)
+    _add_examination(router, parts)
     _add_import(router, parts)
     return router
 
@@ -167,6 +168,18 @@ def _add_uploads(router: APIRouter, parts: Parts) -> None:
             raise
         return Upload(id=folder.name, name=name, size=(folder / UPLOAD).stat().st_size)
 
+    @router.delete("/uploads/{upload}", status_code=204, responses=refusals(409), dependencies=DEMONSTRATE)
+    def remove_upload(upload: UploadId) -> None:
+        """Remove an upload that no import waits for."""
+        _require(parts, upload)
+        if upload in store.awaited_uploads():
+            raise Conflict(f"upload {upload} is being imported; cancel that job first")
+        transfers.remove(upload)
+
+
+def _add_examination(router: APIRouter, parts: Parts) -> None:
+    store = parts.store
+
     @router.post(
         "/uploads/{upload}/examination",
         response_model=model_of(FileReport),
@@ -179,7 +192,7 @@ def _add_uploads(router: APIRouter, parts: Parts) -> None:
         file, task = examination.file.of_upload(upload), _checked_task(examination.task)
         order = ImportOrder(
             key="examination",
-            folder=transfers.folder(upload),
+            folder=parts.transfers.folder(upload),
             task=task,
             name=file.name,
             kind=file.format,
@@ -194,14 +207,6 @@ def _add_uploads(router: APIRouter, parts: Parts) -> None:
         )
         report = parts.reader.call(examine_upload, order, examination.motion)
         return json_response(replace(report, imported_before=store.imported_files.imported_before(task, report.sha256)))
-
-    @router.delete("/uploads/{upload}", status_code=204, responses=refusals(409), dependencies=DEMONSTRATE)
-    def remove_upload(upload: UploadId) -> None:
-        """Remove an upload that no import waits for."""
-        _require(parts, upload)
-        if upload in store.awaited_uploads():
-            raise Conflict(f"upload {upload} is being imported; cancel that job first")
-        transfers.remove(upload)
 
 
 def _add_import(router: APIRouter, parts: Parts) -> None:

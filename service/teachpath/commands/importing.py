@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,15 +13,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from teachpath.commands.audit import note
-from teachpath.commands.options import Config, Data, Json, stored_settings
+from teachpath.commands.options import Config, Data, Json, opened_store, stored_settings
 from teachpath.commands.printing import print_json, verdict_word
 from teachpath.commands.progress import progress_bar
 from teachpath.errors import UnusableRecording
 
 if TYPE_CHECKING:
+    from teachpath.config import Settings
     from teachpath.io.import_settings import ImportSettings
+    from teachpath.io.store.store import Store
+    from teachpath.jobs.limited_process import LimitedProcess
     from teachpath.offline.batch_import import FileOutcome
     from teachpath.offline.file_report import FileReport
+    from teachpath.offline.import_job import ImportOrder
     from teachpath.records import Demonstration, Task
 
 REJECTED = 3  # exit status: all are stored, and some are rejected
@@ -31,28 +35,34 @@ MAX_SHOWN = 5  # points of it
 SUFFIXES = (".csv", ".tsv", ".npy", ".npz", ".traj", ".trc", ".tum", ".mcap", ".db3", ".bag")
 
 
+Format = Annotated[
+    str,
+    typer.Option(
+        help="csv, npy, npz, matrices (4x4), robottasks (.npy), motive, vicon, trc, tum, euroc, rosbag, mcap, or "
+        "of an installed reader; empty: what the file has."
+    ),
+]
+Columns = Annotated[
+    str,
+    typer.Option(
+        help="Where a table has what, by name or number: t=Time,x=Position.X,y=3,...; also qw, qx, qy, qz, number, "
+        "tracked, grasp, flexion."
+    ),
+]
+AtGrasp = Annotated[
+    bool, typer.Option("--object-at-grasp", help="Of a new task: each motion begins at its object, wherever it is.")
+]
+Files = Annotated[list[Path], typer.Argument(help="Files to import, folders of files, or one archive of a task (zip).")]
+
+
 def import_(
     task: Annotated[str, typer.Argument(help="Task to add demonstrations to; made when missing.")],
-    file: Annotated[
-        list[Path], typer.Argument(help="Files to import, folders of files, or one archive of a task (zip).")
-    ],
-    format: Annotated[
-        str,
-        typer.Option(
-            help="csv, npy, npz, matrices (4x4), robottasks (.npy), motive, vicon, trc, tum, euroc, rosbag, mcap, or "
-            "of an installed reader; empty: what the file has."
-        ),
-    ] = "",
+    file: Files,
+    format: Format = "",
     units: Annotated[str, typer.Option(help="Of the positions: m, cm, mm or in; empty: as the file says.")] = "",
     time: Annotated[str, typer.Option(help="Unit of the clock: s, ms, us or ns; empty: as the file says.")] = "",
     rate: Annotated[float, typer.Option(help="[Hz] for a format without a clock; 0: 50.")] = 0.0,
-    columns: Annotated[
-        str,
-        typer.Option(
-            help="Where a table has what, by name or number: t=Time,x=Position.X,y=3,...; also qw, qx, qy, qz, number, "
-            "tracked, grasp, flexion."
-        ),
-    ] = "",
+    columns: Columns = "",
     quaternion: Annotated[str, typer.Option(help="Order of four columns without names: wxyz or xyzw.")] = "",
     track: Annotated[str, typer.Option(help="Which body, marker, topic or frame, of a file with several.")] = "",
     grasp: Annotated[float | None, typer.Option(help="[s] at which the object is taken; 0: the file begins.")] = None,
@@ -60,9 +70,7 @@ def import_(
     whole: Annotated[bool, typer.Option("--whole", help="All of every motion is the transport.")] = False,
     scene: Annotated[str, typer.Option(help="Scene of a new task.")] = "",
     calibration: Annotated[str, typer.Option(help="Of the file's frame; empty: that of the task, or identity.")] = "",
-    object_at_grasp: Annotated[
-        bool, typer.Option("--object-at-grasp", help="Of a new task: each motion begins at its object, wherever it is.")
-    ] = False,
+    object_at_grasp: AtGrasp = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be made of the files.")] = False,
     config: Config = None,
     data: Data = None,
@@ -76,60 +84,92 @@ def import_(
     """
     from teachpath.io.readers.contract import ReadOptions
     from teachpath.io.readers.registry import check_options
-    from teachpath.io.store.store import Store
-    from teachpath.jobs.limited_process import LimitedProcess
-    from teachpath.offline.batch_import import import_batch
-    from teachpath.offline.file_report import examine_files
+    from teachpath.offline.track_samples import PhaseMarks
+
+    settings = stored_settings(config, data, may_make=True)
+    options, marks = ReadOptions(units, time, rate, columns, quaternion, track), PhaseMarks(grasp, release, whole)
+    check_options("import", format, options)
+    found: Sequence[FileReport] | Sequence[FileOutcome]
+    with _inputs(file, settings.imports) as (files, exported), opened_store(settings) as store:
+        if exported:
+            scene, object_at_grasp = scene or exported.scene, object_at_grasp or exported.object_at_grasp
+        order = _order(store, settings, task, format, scene, calibration, object_at_grasp=object_at_grasp)
+        order = replace(order, options=options, marks=marks)
+        if dry_run:
+            found = reports = _examined(store, settings, files, order)
+        else:
+            found = outcomes = _imported(store, settings, files, order, ", ".join(each.name for each in file))
+    if json_:
+        print_json([*found])
+        raise typer.Exit(_status([each.made for each in found], any(each.refusal for each in found)))
+    if dry_run:
+        _report_examination(reports)
+    else:
+        _report(task, outcomes, Path(settings.store.data_dir))
+
+
+def _order(
+    store: Store, settings: Settings, task: str, kind: str, scene: str, calibration: str, *, object_at_grasp: bool
+) -> ImportOrder:
+    """Return what every file is imported with; the batch gives each its own key, folder and name."""
+    from teachpath.io.readers.contract import ReadOptions
     from teachpath.offline.import_job import ImportOrder
     from teachpath.offline.import_target import import_calibration, import_scene, starts_at_object
     from teachpath.offline.track_samples import PhaseMarks
     from teachpath.recorder.calibrations import Calibrations
     from teachpath.robot.scenes import Scenes
 
-    settings = stored_settings(config, data, may_make=True)
-    options = ReadOptions(units, time, rate, columns, quaternion, track)
-    check_options("import", format, options)
+    scenes = Scenes(store.scenes, settings.scenes)
+    calibrations = Calibrations(store, settings.recording, settings.calibrations, scenes.get)
+    return ImportOrder(
+        key="",
+        folder=Path(),
+        task=task,
+        name="",
+        kind=kind,
+        options=ReadOptions(),
+        marks=PhaseMarks(),
+        scene=scenes.get(import_scene(store, task, scene)),
+        calibration=import_calibration(store, calibrations, task, kind, calibration),
+        recording=settings.recording,
+        limits=settings.imports,
+        object_at_grasp=starts_at_object(store, task, object_at_grasp),
+    )
+
+
+def _examined(store: Store, settings: Settings, files: Sequence[Path], order: ImportOrder) -> list[FileReport]:
+    """Return what is understood of each file; nothing is stored."""
+    from teachpath.offline.file_report import examine_files
+
+    with _reading_process(settings) as process, progress_bar("examining") as show:
+        reports = examine_files(files, order, call=process.call, progress=show)
+    before = store.imported_files.imported_before
+    return [replace(each, imported_before=before(order.task, each.sha256)) for each in reports]
+
+
+def _imported(
+    store: Store, settings: Settings, files: Sequence[Path], order: ImportOrder, named: str
+) -> Sequence[FileOutcome]:
+    """Import the files and return what became of each; `named` says in the audit log what was given."""
+    from teachpath.offline.batch_import import import_batch
+
     folder = Path(settings.store.data_dir)
-    with _inputs(file, settings.imports) as (files, exported), ExitStack() as opened:
-        if exported:
-            scene, object_at_grasp = scene or exported.scene, object_at_grasp or exported.object_at_grasp
-        store, process = Store(settings.store), LimitedProcess(settings.jobs)
-        opened.callback(store.close)
-        opened.callback(process.stop)
-        scenes = Scenes(store.scenes, settings.scenes)
-        calibrations = Calibrations(store, settings.recording, settings.calibrations, scenes.get)
-        order = ImportOrder(  # without a key, folder and name: the batch gives each file its own
-            key="",
-            folder=Path(),
-            task=task,
-            name="",
-            kind=format,
-            options=options,
-            marks=PhaseMarks(grasp, release, whole),
-            scene=scenes.get(import_scene(store, task, scene)),
-            calibration=import_calibration(store, calibrations, task, format, calibration),
-            recording=settings.recording,
-            limits=settings.imports,
-            object_at_grasp=starts_at_object(store, task, object_at_grasp),
-        )
-        with progress_bar("examining" if dry_run else "importing") as show:
-            if dry_run:
-                reports = [
-                    replace(each, imported_before=store.imported_files.imported_before(task, each.sha256))
-                    for each in examine_files(files, order, call=process.call, progress=show)
-                ]
-            else:
-                outcomes = import_batch(store, folder, files, order, call=process.call, progress=show)
-                if made := sum(len(each.made) for each in outcomes):
-                    note(settings, f"import into {task}: {made} demonstrations of {', '.join(f.name for f in file)}")
-    if json_:
-        found: list[FileReport | FileOutcome] = [*reports] if dry_run else [*outcomes]
-        print_json(found)
-        raise typer.Exit(_status([each.made for each in found], any(each.refusal for each in found)))
-    if dry_run:
-        _report_examination(reports)
-    else:
-        _report(task, outcomes, folder)
+    with _reading_process(settings) as process, progress_bar("importing") as show:
+        outcomes = import_batch(store, folder, files, order, call=process.call, progress=show)
+    if made := sum(len(each.made) for each in outcomes):
+        note(settings, f"import into {order.task}: {made} demonstrations of {named}")
+    return outcomes
+
+
+@contextmanager
+def _reading_process(settings: Settings) -> Iterator[LimitedProcess]:
+    from teachpath.jobs.limited_process import LimitedProcess
+
+    process = LimitedProcess(settings.jobs)
+    try:
+        yield process
+    finally:
+        process.stop()
 
 
 @contextmanager

@@ -154,6 +154,7 @@ class ZenohBus:
         self._handles: list[Handle] = []
 
     def publish(self, key: str, payload: bytes) -> None:
+        """Send `payload` to all subscribers of `key`, from this session; waits while the way out is full."""
         with self._lock:
             publisher = self._publishers.get(key)
             if publisher is None:
@@ -162,12 +163,16 @@ class ZenohBus:
         publisher.put(payload, attachment=self._source)
 
     def subscribe(self, key: str, receive: Receive) -> Handle:
+        """Call `receive(key, payload)` on Zenoh's thread for all that is published on keys matching `key`."""
+
         def callback(sample: zenoh.Sample) -> None:
             receive(str(sample.key_expr), sample.payload.to_bytes())
 
         return self._keep(Declaration(self._session.declare_subscriber(key, callback).undeclare))
 
     def subscribe_with_source(self, key: str, receive: ReceiveWithSource, *, missed: Missed | None = None) -> Handle:
+        """Call `receive(key, payload, source)` on Zenoh's thread likewise; see `Bus`."""
+
         def callback(sample: zenoh.Sample) -> None:
             receive(str(sample.key_expr), sample.payload.to_bytes(), _source(sample))
 
@@ -184,9 +189,16 @@ class ZenohBus:
         return self._keep(Declaration(undeclare))
 
     def serve(self, key: str, answer: Answer) -> Handle:
+        """Answer queries on `key` in the order they came, on a thread of its own; see `Bus`."""
         return self._keep(_Server(self._session, key, answer))
 
     def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
+        """Query `key` and return the first answer.
+
+        Raises:
+            Unreachable: nobody answered within `timeout` [s].
+            TeachpathError: the one that the answering side raised.
+        """
         for reply in self._session.get(key, payload=payload, timeout=timeout):
             if reply.ok is not None:
                 return bytes(reply.ok.payload.to_bytes())
@@ -198,15 +210,18 @@ class ZenohBus:
         raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
 
     def announce(self, key: str) -> Handle:
+        """Declare a liveliness token on `key`; it goes with the handle, the session or the process."""
         return self._keep(Declaration(self._session.liveliness().declare_token(key).undeclare))
 
     def watch(self, key: str, changed: Changed) -> Handle:
+        """Call `changed(key, alive)` on Zenoh's thread when a part comes or goes; those already there come first."""
         subscriber = self._session.liveliness().declare_subscriber(
             key, lambda s: changed(str(s.key_expr), s.kind == zenoh.SampleKind.PUT), history=True
         )
         return self._keep(Declaration(subscriber.undeclare))
 
     def close(self) -> None:
+        """Take back every declaration, and close the session; a second call does nothing."""
         # A session that closes before an advanced subscriber is undeclared may keep the process from ending.
         for handle in self._handles:
             handle.close()
@@ -234,6 +249,7 @@ class Declaration:
         self._undeclare: Callable[[], object] | None = undeclare
 
     def close(self) -> None:
+        """Call the function, at the first call only."""
         undeclare, self._undeclare = self._undeclare, None
         if undeclare is not None:
             undeclare()
@@ -261,6 +277,7 @@ class _Server:
                     query.reply_err(_pack_error(TeachpathError(f"{self._key} failed: {error!r}")))
 
     def close(self) -> None:
+        """Answer no more; waits up to 5 s for the answer under way."""
         thread, self._thread = self._thread, None
         if thread is not None:
             self._queryable.undeclare()

@@ -20,31 +20,42 @@ class MemoryBus:
         self._watchers: dict[Declaration, tuple[re.Pattern[str], Changed]] = {}
 
     def publish(self, key: str, payload: bytes, *, source: str = "this process") -> None:
+        """Call the receivers of `key` in this thread, in the order of their subscriptions, as if from `source`."""
         with self._lock:
             receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]
         for receive in receivers:
             receive(key, payload, source)
 
     def subscribe(self, key: str, receive: Receive) -> Handle:
+        """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any)."""
         return self.subscribe_with_source(key, lambda key, payload, _: receive(key, payload))
 
     def subscribe_with_source(self, key: str, receive: ReceiveWithSource, *, missed: Missed | None = None) -> Handle:
+        """Call `receive(key, payload, source)` likewise; nothing is ever missed here, so `missed` is not called."""
         handle = Declaration(lambda: self._receivers.pop(handle, None))
         with self._lock:
             self._receivers[handle] = (_pattern(key), receive)
         return handle
 
     def serve(self, key: str, answer: Answer) -> Handle:
+        """Answer queries on `key`, in the thread that asks; a second answer replaces the first."""
         self._answers[key] = answer
         return Declaration(lambda: self._answers.pop(key, None))
 
     def ask(self, key: str, payload: bytes = b"", *, timeout: float = 10.0) -> bytes:
+        """Query `key` and return the answer.
+
+        Raises:
+            Unreachable: nobody serves the key; `timeout` [s] is not waited for.
+            TeachpathError: the one that the answering side raised.
+        """
         answer = self._answers.get(key)
         if answer is None:
             raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
         return answer(payload)
 
     def announce(self, key: str) -> Handle:
+        """Show that a part is alive under `key` until the handle is closed."""
         self._tokens.append(key)
         self._notify(key, True)
 
@@ -55,6 +66,7 @@ class MemoryBus:
         return Declaration(withdraw)
 
     def watch(self, key: str, changed: Changed) -> Handle:
+        """Call `changed(key, alive)` when a part under `key` comes or goes; parts already there come first."""
         handle = Declaration(lambda: self._watchers.pop(handle, None))
         pattern = _pattern(key)
         self._watchers[handle] = (pattern, changed)
@@ -64,6 +76,7 @@ class MemoryBus:
         return handle
 
     def close(self) -> None:
+        """Take back every subscription, answer and watch."""
         self._receivers.clear()
         self._answers.clear()
         self._watchers.clear()
