@@ -134,6 +134,8 @@ sbom: $(READY)
 
 proto: $(READY)
 	cd proto && ../$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. teachpath_proto/tracker.proto teachpath_proto/motion.proto teachpath_proto/job.proto
+	# protoc leaves open what a message is made of; a type checker would call it unknown
+	sed -i "s/_Mapping]/_Mapping[str, object]]/g" proto/teachpath_proto/*_pb2.pyi
 
 clean:
 	rm -rf .venv tools/page/node_modules tools/contract/node_modules .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist service/teachpath/help

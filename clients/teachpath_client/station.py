@@ -22,7 +22,10 @@ ENDED_JOBS = ("succeeded", "failed", "cancelled")
 REREAD_INTERVAL = 1.0  # [s] after which what is awaited is read again though no event came
 MIN_READ_INTERVAL = 0.1  # [s] between two readings of what is awaited
 # The resource that is read again, and further topics of events on which it is.
-TOPICS = {Job: ("jobs", "all"), Execution: ("executions", "executor", "all")}
+TOPICS: dict[type[Job | Execution], tuple[str, ...]] = {
+    Job: ("jobs", "all"),
+    Execution: ("executions", "executor", "all"),
+}
 
 
 def _nothing(_: object) -> None:

@@ -44,7 +44,7 @@ class HandSample(_message.Message):
     flexions: _containers.RepeatedScalarFieldContainer[float]
     tracked: bool
     buttons: int
-    def __init__(self, sequence: _Optional[int] = ..., device_ns: _Optional[int] = ..., position: _Optional[_Union[Vector3, _Mapping]] = ..., orientation: _Optional[_Union[Quaternion, _Mapping]] = ..., flexions: _Optional[_Iterable[float]] = ..., tracked: _Optional[bool] = ..., buttons: _Optional[int] = ...) -> None: ...
+    def __init__(self, sequence: _Optional[int] = ..., device_ns: _Optional[int] = ..., position: _Optional[_Union[Vector3, _Mapping[str, object]]] = ..., orientation: _Optional[_Union[Quaternion, _Mapping[str, object]]] = ..., flexions: _Optional[_Iterable[float]] = ..., tracked: _Optional[bool] = ..., buttons: _Optional[int] = ...) -> None: ...
 
 class StartRecording(_message.Message):
     __slots__ = ("task", "tracker", "calibration", "scene", "rate", "armed", "countdown", "takes", "one_by_one")
@@ -136,7 +136,7 @@ class RecordingReport(_message.Message):
     pending_command: str
     missing: _containers.RepeatedCompositeFieldContainer[SequenceRange]
     late: int
-    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal_used: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., pending_command: _Optional[str] = ..., missing: _Optional[_Iterable[_Union[SequenceRange, _Mapping]]] = ..., late: _Optional[int] = ...) -> None: ...
+    def __init__(self, task: _Optional[str] = ..., tracker: _Optional[str] = ..., demonstrations: _Optional[_Iterable[str]] = ..., received: _Optional[int] = ..., lost: _Optional[int] = ..., duplicated: _Optional[int] = ..., reordered: _Optional[int] = ..., refused: _Optional[int] = ..., untracked: _Optional[int] = ..., longest_gap_ns: _Optional[int] = ..., notes: _Optional[_Iterable[str]] = ..., phase: _Optional[str] = ..., idle: _Optional[int] = ..., gaps: _Optional[int] = ..., conflicts: _Optional[int] = ..., clock_jumps: _Optional[int] = ..., declared_rate: _Optional[float] = ..., seen_rate: _Optional[float] = ..., clock_offset_ns: _Optional[int] = ..., clock_uncertainty_ns: _Optional[int] = ..., clock_rate: _Optional[float] = ..., state: _Optional[str] = ..., pedal_used: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., pending_command: _Optional[str] = ..., missing: _Optional[_Iterable[_Union[SequenceRange, _Mapping[str, object]]]] = ..., late: _Optional[int] = ...) -> None: ...
 
 class SequenceRange(_message.Message):
     __slots__ = ("first", "last")
@@ -170,7 +170,7 @@ class AmendDemonstration(_message.Message):
     mark: str
     discarded: bool
     trim: Span
-    def __init__(self, demonstration: _Optional[str] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., trim: _Optional[_Union[Span, _Mapping]] = ...) -> None: ...
+    def __init__(self, demonstration: _Optional[str] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., trim: _Optional[_Union[Span, _Mapping[str, object]]] = ...) -> None: ...
 
 class Span(_message.Message):
     __slots__ = ("begin", "end")
@@ -200,13 +200,13 @@ class DemonstrationReport(_message.Message):
     discarded: bool
     transport: Span
     advice: str
-    def __init__(self, demonstration: _Optional[str] = ..., task: _Optional[str] = ..., number: _Optional[int] = ..., verdict: _Optional[str] = ..., reasons: _Optional[_Iterable[str]] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., transport: _Optional[_Union[Span, _Mapping]] = ..., advice: _Optional[str] = ...) -> None: ...
+    def __init__(self, demonstration: _Optional[str] = ..., task: _Optional[str] = ..., number: _Optional[int] = ..., verdict: _Optional[str] = ..., reasons: _Optional[_Iterable[str]] = ..., mark: _Optional[str] = ..., discarded: _Optional[bool] = ..., transport: _Optional[_Union[Span, _Mapping[str, object]]] = ..., advice: _Optional[str] = ...) -> None: ...
 
 class RecorderStatus(_message.Message):
     __slots__ = ("recordings",)
     RECORDINGS_FIELD_NUMBER: _ClassVar[int]
     recordings: _containers.RepeatedCompositeFieldContainer[RecordingReport]
-    def __init__(self, recordings: _Optional[_Iterable[_Union[RecordingReport, _Mapping]]] = ...) -> None: ...
+    def __init__(self, recordings: _Optional[_Iterable[_Union[RecordingReport, _Mapping[str, object]]]] = ...) -> None: ...
 
 class HandFeedback(_message.Message):
     __slots__ = ("task", "phase", "state", "holding", "countdown_left", "takes_left", "takes", "newest", "pending_command", "hint")
@@ -230,4 +230,4 @@ class HandFeedback(_message.Message):
     newest: DemonstrationReport
     pending_command: str
     hint: str
-    def __init__(self, task: _Optional[str] = ..., phase: _Optional[str] = ..., state: _Optional[str] = ..., holding: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., takes: _Optional[int] = ..., newest: _Optional[_Union[DemonstrationReport, _Mapping]] = ..., pending_command: _Optional[str] = ..., hint: _Optional[str] = ...) -> None: ...
+    def __init__(self, task: _Optional[str] = ..., phase: _Optional[str] = ..., state: _Optional[str] = ..., holding: _Optional[bool] = ..., countdown_left: _Optional[float] = ..., takes_left: _Optional[int] = ..., takes: _Optional[int] = ..., newest: _Optional[_Union[DemonstrationReport, _Mapping[str, object]]] = ..., pending_command: _Optional[str] = ..., hint: _Optional[str] = ...) -> None: ...

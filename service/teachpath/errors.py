@@ -102,7 +102,7 @@ class QueueFull(Conflict):
         wait: [s] after which to try again.
     """
 
-    wait = 10.0
+    wait: float = 10.0
 
 
 class NotSignedIn(TeachpathError):

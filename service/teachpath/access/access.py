@@ -61,7 +61,7 @@ class Access:
         provider: Provider | None = None,
     ) -> None:
         self.mode = settings.mode
-        self.sessions = Sessions(settings, people, now_ns, oidc.issuer if oidc and provider else "")
+        self.sessions: Sessions = Sessions(settings, people, now_ns, oidc.issuer if oidc and provider else "")
         self.provider: ProviderSignIn | None = None
         if oidc and provider:
             self.provider = ProviderSignIn(oidc, provider, self.sessions, now_ns)

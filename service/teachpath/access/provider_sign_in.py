@@ -76,7 +76,7 @@ class ProviderSignIn:
     def __init__(
         self, settings: OidcSettings, provider: Provider, sessions: Sessions, now_ns: Callable[[], int]
     ) -> None:
-        self.name = settings.name
+        self.name: str = settings.name
         self._settings, self._provider, self._sessions, self._now_ns = settings, provider, sessions, now_ns
         self._attempts = Attempts(lambda: now_ns() / NS)
         self._pending: OrderedDict[str, _Pending] = OrderedDict()  # by the digest of the state

@@ -21,7 +21,7 @@ class Paging:
     """The page of a list that a request wants, and the answer with that page."""
 
     def __init__(self, request: Request, after: After = "", limit: Limit = DEFAULT_LIMIT) -> None:
-        self.wanted = PageRequest(limit, after)
+        self.wanted: PageRequest = PageRequest(limit, after)
         self._url = request.url
 
     def answer(self, page: Page[Any]) -> Response:

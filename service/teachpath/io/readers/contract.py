@@ -62,7 +62,7 @@ class OptionNeeded(UnusableRecording):
 
     def __init__(self, problem: str, option: str, *values: str) -> None:
         super().__init__(problem, option, *values)  # which a process that reads files sends back
-        self.question = OpenQuestion(problem, option, values)
+        self.question: OpenQuestion = OpenQuestion(problem, option, values)
 
     def __str__(self) -> str:
         """Return the problem and the option of the command line."""

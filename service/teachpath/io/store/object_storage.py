@@ -56,7 +56,7 @@ class ObjectStorage:
     """
 
     def __init__(self, url: str = "") -> None:
-        self.url = url.rstrip("/")
+        self.url: str = url.rstrip("/")
         self._clients: dict[str, S3Store] = {}
         if url:
             _require_client()

@@ -129,7 +129,7 @@ class Recordings:
 
     def __init__(self, root: Path, opener: Opener = open_new, url: str = "", cache_size: int = CACHE_SIZE) -> None:
         self._root, self._opener = root, opener
-        self.objects = ObjectStorage(url)
+        self.objects: ObjectStorage = ObjectStorage(url)
         self._cache = ObjectCache(root.parent / CACHE, cache_size, self.objects)
 
     def begin(self, demonstration: str, header: RecordingHeader) -> RecordingFile:

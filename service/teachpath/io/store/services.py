@@ -33,7 +33,7 @@ class Services:
         self._engine, self._writing = engine, engine.execution_options(writing=True)
         self._place = f"{socket.gethostname()}:{folder.absolute()}"
         self._role = ""
-        self.is_shared = is_served(engine)
+        self.is_shared: bool = is_served(engine)
 
     def begin(self, role: str = SERVICE) -> None:
         """Say that this service runs, in a role; of `SERVICE` there is one a station.
