@@ -11,6 +11,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
 from fastapi.routing import iter_route_contexts
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 from starlette.routing import Match
 
 from teachpath.api.access import require_access
@@ -100,6 +101,11 @@ def answer_errors(app: FastAPI) -> None:
         """Answer 422 for a text that no file and no database can hold."""
         sentence = f"the text {error.object[:80]!r} holds half of a surrogate pair; send whole characters"
         return refuse(422, sentence, "UnusableInput")
+
+    @app.exception_handler(ClientDisconnect)
+    async def note_break(_: Request, __: ClientDisconnect) -> Response:
+        """Answer 400 where a body broke off; nobody may hear it, but the log has no fault of ours."""
+        return refuse(400, "the request broke off before its end; send it again", HTTPStatus.BAD_REQUEST.phrase)
 
     @app.exception_handler(OSError)
     async def name_disk(_: Request, error: OSError) -> Response:

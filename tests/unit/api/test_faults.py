@@ -1,11 +1,13 @@
 """Errors as answers: the record that an error carries stands beside its sentence."""
 
 import asyncio
+import json
 from typing import Any
 
 import pytest
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
 from httpx import ASGITransport, AsyncClient
+from starlette.types import Message
 
 from teachpath.api.faults import answer_errors
 from teachpath.errors import LearningFailed, Outdated, PathRefused, TeachpathError
@@ -29,6 +31,26 @@ def answered(error: TeachpathError) -> tuple[int, dict[str, Any]]:
             return answer.status_code, answer.json()
 
     return asyncio.run(ask())
+
+
+def test_a_body_that_breaks_off_is_no_fault_of_the_service() -> None:
+    app, sent = FastAPI(), list[Message]()
+    answer_errors(app)
+
+    @app.post("/")
+    async def read(request: Request) -> None:
+        await request.body()
+
+    async def gone() -> Message:
+        return {"type": "http.disconnect"}
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    scope = {"type": "http", "method": "POST", "path": "/", "query_string": b"", "headers": []}
+    asyncio.run(app(scope, gone, send))
+    assert sent[0]["status"] == 400
+    assert "broke off" in json.loads(sent[1]["body"])["detail"]
 
 
 PROBLEM = ("type", "title", "status")  # what every refusal has besides (RFC 9457)
