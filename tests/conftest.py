@@ -89,7 +89,7 @@ UNDEMANDING = {
     f"tests/system/test_{name}.py"
     for name in (
         "broken_storage", "crashes", "devices", "disk", "evaluate", "hands_free", "help", "kill", "lines", "other_user",
-        "recording", "several_machines", "station", "tracker_check",
+        "recording", "several_machines", "station", "tracker_check", "wheel",
     )
 }  # fmt: skip
 

@@ -1,12 +1,14 @@
 """The client on a small computer: only what the base install brings may be imported."""
 
-import re
 import subprocess
 import sys
-from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
+from functools import cache
+from importlib.metadata import packages_distributions
 
 import pytest
+from packaging.utils import canonicalize_name
 
+from tests.distributions import required
 from tests.waiting import HANG
 
 GUARD = """
@@ -55,35 +57,16 @@ except ClientError as error:
 """
 
 
-def base_distributions() -> set[str]:
-    """Return the names of all distributions that the base install brings."""
-    found, waiting = set(), ["teachpath"]
-    while waiting:
-        name = waiting.pop()
-        for requirement in requires(name) or []:
-            needed, _, marker = requirement.partition(";")
-            depends = re.match(r"[A-Za-z0-9._-]+", needed)
-            assert depends is not None
-            wanted = depends[0].lower().replace("_", "-")
-            if "extra" in marker or wanted in found:
-                continue
-            try:
-                distribution(wanted)
-            except PackageNotFoundError:  # for another Python or another system
-                continue
-            found.add(wanted)
-            waiting.append(wanted)
-    return found
+@cache
+def allowed() -> list[str]:
+    """Return the modules that the base install brings."""
+    modules = packages_distributions().items()
+    brought = {name for name, owners in modules if any(canonicalize_name(owner) in required() for owner in owners)}
+    return sorted(brought | {"teachpath_client", "teachpath_proto"})
 
 
 def run(code: str) -> subprocess.CompletedProcess[str]:
-    base = base_distributions()
-    names = {
-        module
-        for module, owners in packages_distributions().items()
-        if any(owner.lower().replace("_", "-") in base for owner in owners)
-    }
-    guard = GUARD.format(allowed=sorted(names | {"teachpath_client", "teachpath_proto"}))
+    guard = GUARD.format(allowed=allowed())
     return subprocess.run([sys.executable, "-c", guard + code], capture_output=True, text=True, timeout=HANG)
 
 
