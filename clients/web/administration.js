@@ -3,11 +3,15 @@ import { get, post, put, remove, resourcePath } from "./api.js";
 import { closestData, element, hint, option } from "./elements.js";
 import { isName, nameRefusal } from "./names.js";
 import { patchChildren } from "./patch_children.js";
-import { pluralize } from "./texts.js";
+import { formatMoment, pluralize } from "./texts.js";
 
 /** @type {Identity["capabilities"]} */
 const ROLES = ["view", "demonstrate", "teach", "operate", "administer"];
 const ABOUT_PEOPLE = "They sign in on this page. With another password, or removed, they are signed out everywhere.";
+/** @param {string} provider */
+const aboutProvider = (provider) =>
+  `They sign in at ${provider} and are added there; its groups say what they may do here. Who is removed here is signed out ` +
+  `everywhere, and may come again as long as ${provider} has a group for it.`;
 const ABOUT_TOKENS = "Programs send one with every request. What a revoked one has opened is closed within a second.";
 const SHOWN_ONCE = "Copy it now: the station keeps a hash of it, and never tells it again.";
 
@@ -34,13 +38,19 @@ export function administration(place, button, { store }) {
     element("p", { class: "field" }, otherLabel, other),
     element("p", { class: "buttons" }, element("button", { type: "submit" }, "Set the password")),
   );
-  place.append(element("h2", {}, "People"), hint(ABOUT_PEOPLE), people, otherForm, person.form);
+  const aboutPeople = hint(ABOUT_PEOPLE);
+  place.append(element("h2", {}, "People"), aboutPeople, people, otherForm, person.form);
   place.append(element("h2", {}, "Tokens"), hint(ABOUT_TOKENS), tokens, made, token.form, refusal);
   let chosen = ""; // whose password is changed
 
   async function read() {
     const [allPeople, allTokens] = await Promise.all([get("people"), get("tokens")]);
-    patchChildren(people, allPeople.map(personRow));
+    const { provider } = store.state.identity;
+    const nobody = element("li", {}, hint("Nobody has signed in yet."));
+    patchChildren(
+      people,
+      allPeople.length ? allPeople.map((/** @type {ListedPerson} */ one) => personRow(one, !provider)) : nobody,
+    );
     patchChildren(tokens, allTokens.length ? allTokens.map(tokenRow) : element("li", {}, hint("No tokens yet.")));
   }
 
@@ -75,7 +85,9 @@ export function administration(place, button, { store }) {
 
   store.subscribe(({ identity }, changed) => {
     if (!changed.has("identity")) return;
-    button.hidden = identity.mode !== "token" || !identity.capabilities.includes("administer");
+    button.hidden = !["token", "oidc"].includes(identity.mode) || !identity.capabilities.includes("administer");
+    person.form.hidden = identity.provider !== "";
+    aboutPeople.textContent = identity.provider ? aboutProvider(identity.provider) : ABOUT_PEOPLE;
     if (button.hidden && place.matches(":popover-open")) place.hidePopover();
   });
   place.addEventListener("toggle", (event) => {
@@ -176,14 +188,16 @@ function passwordInput(id) {
   return element("input", { type: "password", id, required: "", minlength: 10, autocomplete: "new-password" });
 }
 
-/** @param {ListedPerson} person */
-function personRow({ name, roles, sessions, used_ns }) {
-  const use = sessions ? `${sessions} ${pluralize(sessions, "session")}, used ${moment(used_ns)}` : "not signed in";
+/** @param {ListedPerson} person @param {boolean} hasPassword here, not at a provider */
+function personRow({ name, roles, sessions, used_ns }, hasPassword) {
+  const use = sessions
+    ? `${sessions} ${pluralize(sessions, "session")}, used ${formatMoment(used_ns)}`
+    : "not signed in";
   return element(
     "li",
     { "data-key": name },
     element("span", {}, element("b", {}, name), ` ${roles.join(", ")}; ${use}`),
-    element("button", { type: "button", "data-new-password": name }, "New password"),
+    hasPassword && element("button", { type: "button", "data-new-password": name }, "New password"),
     element("button", { type: "button", "data-remove-person": name }, "Remove"),
   );
 }
@@ -191,17 +205,12 @@ function personRow({ name, roles, sessions, used_ns }) {
 /** @param {ListedToken} token */
 function tokenRow({ name, roles, created_ns, expires_ns, used_ns, revoked_ns }) {
   const isExpired = expires_ns / 1e6 < Date.now();
-  const state = revoked_ns ? "revoked" : isExpired ? "expired" : `until ${moment(expires_ns)}`;
+  const state = revoked_ns ? "revoked" : isExpired ? "expired" : `until ${formatMoment(expires_ns)}`;
   const holds = !revoked_ns && !isExpired;
   return element(
     "li",
     { "data-key": `${name} ${created_ns}` },
-    element("span", {}, element("b", {}, name), ` ${roles.join(", ")}; ${state}; used ${moment(used_ns)}`),
+    element("span", {}, element("b", {}, name), ` ${roles.join(", ")}; ${state}; used ${formatMoment(used_ns)}`),
     holds && element("button", { type: "button", "data-revoke-token": name }, "Revoke"),
   );
-}
-
-/** @param {number} at_ns [ns] since the Unix epoch; 0: never */
-function moment(at_ns) {
-  return at_ns ? new Date(at_ns / 1e6).toLocaleString("en-GB", { dateStyle: "short", timeStyle: "short" }) : "never";
 }

@@ -22,6 +22,11 @@ export function formatPercent(share) {
   return `${Math.round(100 * (share ?? 0))}\u202f%`;
 }
 
+/** A moment of the clock on the wall. @param {number} at_ns [ns] since the Unix epoch; 0: never */
+export function formatMoment(at_ns) {
+  return at_ns ? new Date(at_ns / 1e6).toLocaleString("en-GB", { dateStyle: "short", timeStyle: "short" }) : "never";
+}
+
 /** @param {number} count @param {string} word */
 export function pluralize(count, word) {
   return count === 1 ? word : `${word}s`;

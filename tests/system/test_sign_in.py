@@ -109,7 +109,7 @@ def test_a_person_signs_in_at_a_provider(browser: Any, tmp_path: Path) -> None:
     secret.chmod(0o600)
     with running() as provider:
         client = {"name": "Lab", "issuer": provider.issuer, "client_id": CLIENT, "client_secret_file": str(secret)}
-        oidc = client | {"teach": ["teachers"]}
+        oidc = client | {"administer": ["teachers"]}
         with stations.station(auth={"mode": "oidc"}, oidc=oidc) as station, stations.web_port(station) as port:
             page = browser.new_page()
             page.set_default_timeout(1000 * HANG)
@@ -126,6 +126,13 @@ def test_a_person_signs_in_at_a_provider(browser: Any, tmp_path: Path) -> None:
             assert page.url == f"http://127.0.0.1:{port}/"  # without the code
             (cookie,) = page.context.cookies()
             assert (cookie["httpOnly"], cookie["sameSite"]) == (True, "Strict")
+            page.click("#access-button")
+            page.wait_for_selector("#access li[data-key=anna]:has-text('1 session')")
+            assert "They sign in at Lab and are added there" in page.inner_text("#access")
+            assert not page.is_visible("#person-name")
+            assert not page.is_visible("[data-new-password=anna]")
+            assert page.is_visible("#token-name")  # programs have tokens here too
+            page.click("#access-button")
             page.click("#identity button")
             page.wait_for_selector("text=Sign in with Lab")
             assert page.context.cookies() == []
