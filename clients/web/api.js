@@ -37,12 +37,13 @@ export async function getPage(path) {
 
 /**
  * A whole list, page by page.
- * @param {string} path
+ * @param {string} path perhaps with a query
  * @returns {Promise<any[]>}
  */
 export async function getList(path) {
   const list = [];
-  for (let place = `${path}?limit=${PAGE_SIZE}`; place; ) {
+  const mark = path.includes("?") ? "&" : "?";
+  for (let place = `${path}${mark}limit=${PAGE_SIZE}`; place; ) {
     const { entries, next } = await getPage(place);
     list.push(...entries);
     place = next;

@@ -59,6 +59,25 @@ function connectionWatcher() {
 }
 
 /**
+ * Sentences about tasks that were made, renamed, deleted or brought back; whatever it is called, a task keeps when it was made.
+ * @param {Task[] | null} before
+ * @param {Task[] | null} now
+ */
+export function taskListChanges(before, now) {
+  if (before === now || !before || !now) return [];
+  const [former, present] = [before, now].map((tasks) => new Map(tasks.map((task) => [task.created_ns, task.name])));
+  const newest = Math.max(0, ...former.keys());
+  const come = [...present].flatMap(([made, name]) => {
+    const old = former.get(made);
+    if (old === name) return [];
+    if (old) return [`Task ${old} is called ${name} now`];
+    return [`Task ${name} ${made > newest ? "was made" : "was brought back"}`];
+  });
+  const gone = [...former].filter(([made]) => !present.has(made));
+  return [...come, ...gone.map(([, name]) => `Task ${name} was deleted; it is kept`)];
+}
+
+/**
  * Sentences about how two states differ, in the order of the work.
  * @param {State} before
  * @param {State} now
@@ -66,7 +85,7 @@ function connectionWatcher() {
 function changesBetween(before, now) {
   const notes = (now.station?.notes ?? []).filter((note) => !before.station?.notes.includes(note));
   return [
-    ...newEntries(before.tasks, now.tasks, (task) => task.name).map(([, task]) => `Task ${task.name} was made`),
+    ...taskListChanges(before.tasks, now.tasks),
     ...membershipChanges(before.trackers, now.trackers, ({ name }) => name).map(
       ([name, here]) => `Tracker ${name} ${here ? "is here" : "has left"}`,
     ),

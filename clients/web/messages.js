@@ -1,7 +1,9 @@
-// The message line: every error with what to do, every outcome worth a word; read aloud by screen readers.
+// The message line: every error with what to do, every outcome worth a word, perhaps with its undo; read aloud by screen readers.
 import { element } from "./elements.js";
 
 const NOTE_DURATION = 6000; // [ms] of a note; an error stays until it is closed or another attempt succeeds
+
+/** @typedef {{label: string, order: () => Promise<unknown>}} Action */
 
 export class Messages {
   #said = 0; // sentences so far
@@ -12,17 +14,28 @@ export class Messages {
     this.place = place;
   }
 
-  /** @param {string} text @param {string} kind "note" or "error" */
-  show(text, kind = "note") {
+  /**
+   * @param {string} text
+   * @param {string} kind "note" or "error"
+   * @param {Action | null} action offered with it; it stays until it is closed then
+   */
+  show(text, kind = "note", action = null) {
     clearTimeout(this.#timer);
     this.#said += 1;
     const close = element("button", { type: "button", class: "close", "aria-label": "Close this message" }, "×");
     close.addEventListener("click", () => this.clear());
     // an error interrupts the screen reader, a note waits its turn
     this.place.setAttribute("role", kind === "error" ? "alert" : "status");
-    this.place.replaceChildren(element("p", { class: kind }, text), close);
+    this.place.replaceChildren(element("p", { class: kind }, text), ...(action ? [this.#button(action)] : []), close);
     this.place.hidden = false;
-    if (kind === "note") this.#timer = setTimeout(() => this.clear(), NOTE_DURATION);
+    if (kind === "note" && !action) this.#timer = setTimeout(() => this.clear(), NOTE_DURATION);
+  }
+
+  /** @param {Action} action */
+  #button({ label, order }) {
+    const button = element("button", { type: "button" }, label);
+    button.addEventListener("click", () => this.attempt(order));
+    return button;
   }
 
   clear() {

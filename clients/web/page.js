@@ -33,6 +33,7 @@ import { SceneLayers } from "./scene_layers.js";
 import { doneSteps } from "./steps.js";
 import { activeExecution, Store } from "./store.js";
 import { Tabs } from "./tabs.js";
+import { taskMenu } from "./task_menu.js";
 import { View } from "./view.js";
 import { connectViewControls } from "./view_controls.js";
 import { feedView } from "./view_feed.js";
@@ -124,6 +125,7 @@ for (const panel of panels) {
   panel.mount(place, context);
 }
 newTaskDialog(byId("new-task"), context);
+taskMenu(byId("task-menu"), context);
 administration(byId("access"), byId("access-button"), context);
 eventLog(byId("events"), byId("events-button"), store);
 const taskSelect = /** @type {HTMLSelectElement} */ (byId("task"));

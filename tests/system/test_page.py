@@ -74,7 +74,7 @@ def test_nothing_keeps_anybody_from_the_page(visit: Visit) -> None:
         for name in TABS:
             tab(visit, name)
             found += barriers(page, f"{task}, {name}, {scheme}")
-        for name in ("events", "new-task"):
+        for name in ("events", "new-task", "task-menu"):
             page.locator(f"#{name}-button").click()
             found += barriers(page, f"{name}, {scheme}")
             page.keyboard.press("Escape")
@@ -88,7 +88,7 @@ def test_the_whole_story_is_told_by_the_keyboard_alone(visit: Visit, service: Se
     assert operator.said == []
 
 
-def test_a_task_is_made_in_the_page_and_kept_through_a_reload(visit: Visit, service: Service) -> None:
+def test_a_task_is_made_renamed_and_deleted_in_the_page_and_kept_through_a_reload(visit: Visit, service: Service) -> None:
     page = visit.page
     for name in (TASK, "another"):
         page.locator("#new-task-button").click()
@@ -102,10 +102,48 @@ def test_a_task_is_made_in_the_page_and_kept_through_a_reload(visit: Visit, serv
     visit.wait(lambda: page.locator("#task").input_value() == "another")
     another = service.station.get_task("another")
     assert (another.scene, another.object_at_grasp) == ("empty", True)
+    rename_delete_and_undo(visit, service)
     page.select_option("#task", TASK)
     page.reload()
     page.wait_for_selector("html[data-scene=ready]", state="attached")
     assert page.locator("#task").input_value() == TASK
+
+
+def rename_delete_and_undo(visit: Visit, service: Service) -> None:
+    """Rename the chosen task `another` and undo that, then delete it, and bring it back in each of the two ways."""
+    page, menu, name = visit.page, visit.page.locator("#task-menu"), visit.page.locator("#task-name")
+    undo = page.locator("#message").get_by_role("button", name="Undo")
+
+    def stands(chosen: str, *, deleted: str = "") -> None:
+        visit.wait(lambda: page.locator("#task").input_value() == chosen and not menu.is_visible())
+        assert [task.name for task in service.station.tasks(archived=True)] == [deleted] * bool(deleted)
+
+    def newest() -> str:
+        return service.station.tasks()[-1].name  # which is chosen when the chosen one is gone
+
+    def order(button: str) -> None:
+        page.locator("#task-menu-button").click()
+        menu.get_by_role("button", name=button).click()
+
+    page.locator("#task-menu-button").click()
+    name.fill("two words")
+    assert "cannot name a task" in name.evaluate("one => one.validationMessage")
+    name.fill(TASK)
+    name.press("Enter")
+    menu.locator(".error:has-text('there is a task seen already')").wait_for()
+    name.fill("renamed")
+    name.press("Enter")
+    stands("renamed")
+    undo.click()
+    stands("another")
+    order("Delete the task")
+    stands(newest(), deleted="another")
+    undo.click()
+    stands("another")
+    order("Delete the task")
+    stands(newest(), deleted="another")
+    order("Bring back")
+    stands("another")
 
 
 def test_no_request_leaves_the_machine(visit: Visit, service: Service) -> None:
