@@ -17,7 +17,7 @@ from teachpath.nurbs import Curve
 from teachpath_client.models import Run
 from tests.system.access import barriers
 from tests.system.keyboard import tell_by_keyboard
-from tests.system.operators import Operator
+from tests.system.operators import Operator, named_joints
 from tests.system.packages import Package
 from tests.system.processes import Service, run
 from tests.system.test_station import record
@@ -239,6 +239,7 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
         learn(service, TASK)
         visit = Visit(browser, service.url)
         choose(visit, TASK)
+        visit.page.route("**/api/v1/robot", named_joints)  # it comes back with another arm
         service.process.terminate()
         assert service.wait() == 0
     page = visit.page
@@ -259,6 +260,7 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
         again.station.make_task("made-meanwhile")
         page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached")
         page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
+        visit.wait(lambda: page.evaluate("teachpath.state().robot.joints[1].name") == "axis 1")
         visit.wait(lambda: page.locator("#connection").inner_text() == "Connected")
         visit.wait(lambda: "At rest" in page.locator("#arm .state").inner_text())
         page.locator("#events-button").click()

@@ -1,5 +1,6 @@
 // From a saved version to a certified plan, and on to where the arm is moved.
 import { get, post, resourcePath } from "../api.js";
+import { nameJoints } from "../arm/joint_names.js";
 import { block, closest, element, progressBar } from "../elements.js";
 import { icon } from "../icons.js";
 import { patchChildren } from "../patch_children.js";
@@ -47,7 +48,11 @@ export function certificationSection(place, editor, foot) {
       render();
     });
   });
-  const render = () => patchChildren(status, ...(job && job.path === editor.draft?.path ? content(job) : []));
+  const render = () =>
+    patchChildren(
+      status,
+      ...(job && job.path === editor.draft?.path ? content(job, editor.context.store.state.robot) : []),
+    );
 
   return {
     update({ draft, planning }, what) {
@@ -64,10 +69,16 @@ export function certificationSection(place, editor, foot) {
   };
 }
 
-/** @param {Planning} planning @returns {Child[]} */
-function content({ state, message, fraction, plan, version }) {
+/** @param {Planning} planning @param {Robot | null} robot @returns {Child[]} */
+function content({ state, message, fraction, plan, version }, robot) {
   if (state === "failed" || state === "cancelled")
-    return [element("p", { class: "failed" }, `Version ${versionTitle(version)} is not certified: ${message}.`)];
+    return [
+      element(
+        "p",
+        { class: "failed" },
+        `Version ${versionTitle(version)} is not certified: ${nameJoints(message, robot)}.`,
+      ),
+    ];
   if (!plan) return [element("p", {}, message || "waiting to be planned …"), progressBar(fraction, "planning")];
   const { duration, certificate } = plan;
   const clearance =

@@ -1,4 +1,5 @@
 // Whether the arm can follow the draft: a sentence, the segment that fails, what to move, and the colors along the curve.
+import { nameJoints } from "../arm/joint_names.js";
 import { blocked, closest, element, svgElement } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { capitalize, formatLength, formatNumber } from "../texts.js";
@@ -43,8 +44,9 @@ export function feasibilitySection(place, editor) {
 }
 
 /** @param {Editor} editor @returns {Child[]} */
-function content({ draft, feasibility }) {
-  if (feasibility?.error) return [element("p", { class: "failed" }, feasibility.error)];
+function content({ draft, feasibility, context }) {
+  const { robot } = context.store.state;
+  if (feasibility?.error) return [element("p", { class: "failed" }, nameJoints(feasibility.error, robot))];
   if (!feasibility?.assessment) return [element("p", { class: "note" }, "The service is assessing the curve …")];
   const { failure, duration, sentence: outlook, lengths, clearance } = feasibility.assessment;
   if (!failure) {
@@ -60,7 +62,7 @@ function content({ draft, feasibility }) {
     element(
       "p",
       { class: "failed" },
-      `From ${formatNumber(interval[0], 3)} to ${formatNumber(interval[1], 3, "m")} the arm cannot follow: ${reason}.`,
+      `From ${formatNumber(interval[0], 3)} to ${formatNumber(interval[1], 3, "m")} the arm cannot follow: ${nameJoints(reason, robot)}.`,
     ),
     element("p", {}, `${capitalize(suggestion.sentence)}.`),
     size > 0 &&

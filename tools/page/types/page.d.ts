@@ -43,6 +43,7 @@ declare global {
     recordings: ActiveRecording[];
     trackers: { name: string }[];
     guidance: Record<string, string>;
+    robot: Robot | null;
     station: { notes: string[]; authority: boolean; documents: boolean } | null;
     executor: ExecutorStatus | null;
     lease: LeaseState | null;
