@@ -25,6 +25,7 @@ import { panelHelp } from "./help_links.js";
 import { IdentityControl, missingSentence } from "./identity.js";
 import { Messages } from "./messages.js";
 import { newTaskDialog } from "./new_task.js";
+import { panelWidth } from "./panel_width.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
 import { panel as run } from "./panels/run.js";
@@ -152,6 +153,7 @@ byId("panels").addEventListener("click", (event) => {
   if (open) tabs.select(open);
 });
 connectViewControls(view, store);
+panelWidth(/** @type {HTMLElement} */ (byId("panels").parentElement));
 keepFocus();
 // The space bar stops the arm wherever the focus is, but in a text field.
 addEventListener(

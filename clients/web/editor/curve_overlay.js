@@ -3,6 +3,7 @@
 import { BasisFunctions, evaluateCurve, linspace } from "../nurbs.js";
 import { arcLengths } from "../polyline.js";
 import { TubeGeometry } from "../tube_geometry.js";
+import { PointNumbers } from "./point_numbers.js";
 
 const SAMPLES = 201;
 const MAX_CONTROL_POINTS = 512; // control points
@@ -36,6 +37,7 @@ export class CurveOverlay {
     for (const [i, drawn] of [this.polygon, this.handles, this.marker].entries()) drawn.renderOrder = 2 + i;
     const tubeMesh = new THREE.Mesh(this.tube.geometry, tubeMaterial());
     this.group.add(this.corridorMesh, tubeMesh, this.polygon, this.handles, this.marker);
+    this.numbers = new PointNumbers(this.group);
     this.group.visible = false;
     overlay.group.add(this.group);
     this.setColors(null);
@@ -58,6 +60,7 @@ export class CurveOverlay {
     if (!this.#basis?.matches(curve)) this.#basis = new BasisFunctions(curve.degree, curve.knots, PARAMETERS);
     this.tube.setPath(this.#basis.evaluate(curve, this.#points), RADIUS);
     for (const [i, point] of curve.control_points.entries()) this.positions.set(point, 3 * i);
+    this.numbers.move(curve.control_points);
     this.polygon.geometry.attributes.position.needsUpdate = true;
     for (const drawn of [this.polygon, this.handles]) drawn.geometry.setDrawRange(0, curve.control_points.length);
     this.overlay.requestDraw();
@@ -69,6 +72,7 @@ export class CurveOverlay {
    */
   setSelection(draft) {
     this.#draft = draft;
+    this.numbers.choose(draft);
     const [ink, selected, pinned] = [themeColor("--ink"), themeColor("--way-1"), themeColor("--faint")];
     for (let i = 0; i <= draft.last; i++) {
       const { r, g, b } = draft.selected.includes(i) ? selected : draft.isPinned(i) ? pinned : ink;

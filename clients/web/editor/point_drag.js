@@ -1,4 +1,5 @@
 // A drag of the selected control points: drawn once a frame, and one step of the draft when it ends.
+import { ChangeLabel } from "./change_label.js";
 import { movePoints } from "./curve_edits.js";
 
 export class PointDrag {
@@ -9,6 +10,7 @@ export class PointDrag {
   /** @param {import("./editor.js").Editor} editor */
   constructor(editor) {
     this.editor = editor;
+    this.label = new ChangeLabel(editor.overlay);
   }
 
   get active() {
@@ -46,6 +48,7 @@ export class PointDrag {
     const { indices } = this.#drag;
     this.#redraw();
     this.#drag = null;
+    this.label.hide();
     const points = indices.length === 1 ? `control point ${indices[0] + 1}` : `${indices.length} control points`;
     this.editor.draft?.endDrag(`moving ${points}`);
     this.editor.curveChanged();
@@ -53,6 +56,7 @@ export class PointDrag {
 
   cancel() {
     this.#drag = null;
+    this.label.hide();
     this.editor.draft?.cancelDrag();
     this.editor.curveChanged();
   }
@@ -67,5 +71,6 @@ export class PointDrag {
       draft.preview(movePoints(drag.curve, drag.indices, drag.by));
       this.editor.curveDragged();
     }, context.view);
+    if (this.editor.selectionCenter) this.label.show(drag.by, this.editor.selectionCenter);
   }
 }
