@@ -10,6 +10,7 @@ export const DOCUMENTS = {
   ],
   ways: [["consistency", "How the ways are told apart"]],
   edit: [["certificate", "What a certificate proves"]],
+  scene: [["scenes", "Scenes from files"]],
   run: [
     ["live-hand", "Live hand"],
     ["real-arm", "Real arms"],

@@ -7,6 +7,7 @@ const GREY = 0x7a8694;
 const RED = 0xd62718;
 const VIOLET = 0x8e44ad; // of what departs; red is for what is forbidden or has failed
 const GREEN = 0x2a8f5a;
+const BLUE = 0x2f7fbf; // of what is chosen
 
 /** @typedef {{kind: string, size: number[], vertices?: Point[]}} Solid */
 
@@ -38,10 +39,10 @@ export function shapeGeometry({ kind, size, vertices = [] }) {
   return geometry;
 }
 
-/** @param {Shape} shape */
-export function shapeMesh(shape) {
+/** @param {Shape} shape @param {number} opacity */
+export function shapeMesh(shape, opacity = 1) {
   const { THREE } = globalThis.MeshCat;
-  const mesh = placed(new THREE.Mesh(shapeGeometry(shape), phongMaterial(shape.color)), shape);
+  const mesh = placed(new THREE.Mesh(shapeGeometry(shape), phongMaterial(shape.color, opacity)), shape);
   mesh.castShadow = mesh.receiveShadow = true;
   return mesh;
 }
@@ -63,6 +64,19 @@ export function keepInEdges(zone) {
   const { THREE } = globalThis.MeshCat;
   const edges = new THREE.EdgesGeometry(shapeGeometry(zone));
   return placed(new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: GREEN })), zone);
+}
+
+/**
+ * The edges of the shape that is chosen, drawn over everything.
+ * @param {Shape} shape
+ */
+export function chosenEdges(shape) {
+  const { THREE } = globalThis.MeshCat;
+  const edges = new THREE.EdgesGeometry(shapeGeometry(shape), 20);
+  const drawn = placed(new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: BLUE })), shape);
+  drawn.material.depthTest = false;
+  drawn.renderOrder = 3;
+  return drawn;
 }
 
 /**

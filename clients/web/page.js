@@ -29,6 +29,7 @@ import { panelWidth } from "./panel_width.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
 import { panel as run } from "./panels/run.js";
+import { panel as scene } from "./panels/scene.js";
 import { panel as ways } from "./panels/ways.js";
 import { enablePathPicking } from "./path_picking.js";
 import { SceneLayers } from "./scene_layers.js";
@@ -41,7 +42,7 @@ import { connectViewControls } from "./view_controls.js";
 import { feedView } from "./view_feed.js";
 
 /** What the tabs are for, as capabilities. @type {Record<string, Identity["capabilities"]>} */
-const NEEDED = { demonstrate: ["demonstrate"], ways: ["teach"], edit: ["teach"], run: ["operate"] };
+const NEEDED = { demonstrate: ["demonstrate"], ways: ["teach"], edit: ["teach"], run: ["operate"], scene: ["teach"] };
 const TAB_KEY = "tab"; // chosen in this browser tab, through a reload
 const STOP_TIMEOUT = 3000; // [ms] of one try: the service says within 2 s that it has no confirmation
 
@@ -113,7 +114,7 @@ const context = {
   armStop,
 };
 /** @type {Panel[]} */
-const panels = [demonstrate, ways, edit, run];
+const panels = [demonstrate, ways, edit, run, scene];
 /** @type {Map<Panel, HTMLElement>} what somebody may not do in a panel */
 const missing = new Map();
 const help = [byId("help")]; // links to the documents

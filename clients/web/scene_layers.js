@@ -1,8 +1,9 @@
 // Draws the chosen task in the 3-D view: its scene, demonstrations, learned paths, deviations and spread.
-// Names in the view's tree: /scene/NAME, /zones/NAME, /demonstrations/ID, /paths/ID, /deviations/ID (of a demonstration), and of a path
+// Names in the view's tree: /scene/NAME, /zones/NAME, while a scene is edited /scene-object/object and /scene-chosen/shape, /demonstrations/ID, /paths/ID, /deviations/ID (of a demonstration), and of a path
 // also /marks/ID, /names/ID, /spread/ID; panels may draw beside them on the overlay.
 import { get } from "./api.js";
 import {
+  chosenEdges,
   demonstrationLine,
   deviationTube,
   highlightTube,
@@ -26,6 +27,8 @@ export class SceneLayers {
   #reading = {}; // the newest reading of the scenes
   /** @type {Map<string, string>} */
   #drawn = new Map(); // name in the tree -> key
+  /** @type {Scene | null} */
+  #preview = null; // a scene that is edited, drawn instead of the task's
 
   /** @param {import("./view.js").View} view @param {import("./store.js").Store} store */
   constructor(view, store) {
@@ -63,6 +66,20 @@ export class SceneLayers {
     if (changesAny(changed, "focus", "path", "runs")) this.#highlight(state);
   }
 
+  /**
+   * Draw a scene that is edited instead of the task's, with what of it is chosen; null: the task's again.
+   * @param {Scene | null} scene
+   * @param {Shape | null} chosen
+   */
+  preview(scene, chosen) {
+    if (!scene && !this.#preview) return;
+    this.#preview = scene;
+    const { carried = null } = scene ?? {};
+    this.#sync("scene-object", carried ? [["object", JSON.stringify(carried), () => shapeMesh(carried, 0.6)]] : []);
+    this.#sync("scene-chosen", chosen ? [["shape", JSON.stringify(chosen), () => chosenEdges(chosen)]] : []);
+    this.#showScene();
+  }
+
   /** Read the scenes anew, because one was changed; before the tasks are known, nothing has been drawn of them. */
   async reread() {
     if (this.store.state.tasks === null) return;
@@ -82,7 +99,7 @@ export class SceneLayers {
     }
     const { state } = this.store; // another task may have been chosen meanwhile
     const name = state.tasks?.find((task) => task.name === state.task)?.scene;
-    const scene = this.#scenes.find((other) => other.name === name) ?? this.#scenes[0];
+    const scene = this.#preview ?? this.#scenes.find((other) => other.name === name) ?? this.#scenes[0];
     this.#sync(
       "scene",
       scene.obstacles.map((shape) => [shape.name, JSON.stringify(shape), () => shapeMesh(shape)]),

@@ -64,7 +64,7 @@ def store(service: Service, path: str) -> int:
 
 
 def test_the_scene_of_a_new_task_stays_chosen(desk: Desk) -> None:
-    scene = desk.page.get_by_label("Scene", exact=True)
+    scene = desk.page.locator("#new-scene")
     desk.click("#new-task-button")
     desk.wait(lambda: scene.locator("option").count() > 1)
     desk.page.keyboard.press("Escape")
@@ -81,7 +81,7 @@ def test_a_popover_that_was_left_opens_nothing_any_more(desk: Desk, service: Ser
     made = Late(desk, "tasks/left", "PUT")
     desk.click("#new-task-button")
     desk.page.get_by_label("Name", exact=True).fill("left")
-    desk.wait(lambda: desk.page.get_by_label("Scene", exact=True).input_value() != "")
+    desk.wait(lambda: desk.page.locator("#new-scene").input_value() != "")
     desk.page.get_by_role("button", name="Make the task").click()
     made.wait()
     desk.page.keyboard.press("Escape")
@@ -98,7 +98,7 @@ def test_a_new_task_stays_chosen_beside_a_list_from_before_it(desk: Desk, servic
     lists.wait()
     desk.click("#new-task-button")
     desk.page.get_by_label("Name", exact=True).fill("mine")
-    desk.wait(lambda: desk.page.get_by_label("Scene", exact=True).input_value() != "")
+    desk.wait(lambda: desk.page.locator("#new-scene").input_value() != "")
     with desk.page.expect_response(lambda answer: answer.request.method == "PUT"):
         desk.page.get_by_role("button", name="Make the task").click()
     lists.let_go()

@@ -17,7 +17,7 @@ from teachpath.nurbs import Curve
 from teachpath_client.models import Run
 from tests.system.access import barriers
 from tests.system.keyboard import tell_by_keyboard
-from tests.system.operators import Operator, named_joints
+from tests.system.operators import Operator
 from tests.system.packages import Package
 from tests.system.processes import Service, run
 from tests.system.test_station import record
@@ -27,7 +27,7 @@ from tests.waiting import HANG
 pytestmark = pytest.mark.system
 
 TASK = "seen"
-TABS = ("demonstrate", "ways", "edit", "run")
+TABS = ("demonstrate", "ways", "edit", "run", "scene")
 SOCKETS = ("view", "events", "joints", "trackers/page-x/samples")
 
 
@@ -88,12 +88,14 @@ def test_the_whole_story_is_told_by_the_keyboard_alone(visit: Visit, service: Se
     assert operator.said == []
 
 
-def test_a_task_is_made_renamed_and_deleted_in_the_page_and_kept_through_a_reload(visit: Visit, service: Service) -> None:
+def test_tasks_and_scenes_are_made_and_changed_in_the_page_and_kept_through_a_reload(
+    visit: Visit, service: Service
+) -> None:
     page = visit.page
     for name in (TASK, "another"):
         page.locator("#new-task-button").click()
         page.get_by_label("Name", exact=True).fill(name)
-        page.get_by_label("Scene", exact=True).select_option("empty")
+        page.locator("#new-scene").select_option("empty")
         page.get_by_label("The object lies elsewhere each time").check()
         page.get_by_role("button", name="Make the task").click()
         if name == TASK:
@@ -103,6 +105,7 @@ def test_a_task_is_made_renamed_and_deleted_in_the_page_and_kept_through_a_reloa
     another = service.station.get_task("another")
     assert (another.scene, another.object_at_grasp) == ("empty", True)
     rename_delete_and_undo(visit, service)
+    edit_the_scene(visit, service)
     page.select_option("#task", TASK)
     page.reload()
     page.wait_for_selector("html[data-scene=ready]", state="attached")
@@ -111,15 +114,16 @@ def test_a_task_is_made_renamed_and_deleted_in_the_page_and_kept_through_a_reloa
 
 def rename_delete_and_undo(visit: Visit, service: Service) -> None:
     """Rename the chosen task `another` and undo that, then delete it, and bring it back in each of the two ways."""
-    page, menu, name = visit.page, visit.page.locator("#task-menu"), visit.page.locator("#task-name")
-    undo = page.locator("#message").get_by_role("button", name="Undo")
+    page, menu, name = visit.page, visit.page.locator("#task-menu"), visit.page.locator("#other-task-name")
 
-    def stands(chosen: str, *, deleted: str = "") -> None:
-        visit.wait(lambda: page.locator("#task").input_value() == chosen and not menu.is_visible())
+    def stands(said: str, *, chosen: str = "", deleted: str = "") -> None:
+        page.locator(f"#message:has-text('{said}')").wait_for()
+        newest = service.station.tasks()[-1].name  # which is chosen when the chosen one is gone
+        visit.wait(lambda: page.locator("#task").input_value() == (chosen or newest) and not menu.is_visible())
         assert [task.name for task in service.station.tasks(archived=True)] == [deleted] * bool(deleted)
 
-    def newest() -> str:
-        return service.station.tasks()[-1].name  # which is chosen when the chosen one is gone
+    def undo() -> None:
+        page.locator("#message").get_by_role("button", name="Undo").click()
 
     def order(button: str) -> None:
         page.locator("#task-menu-button").click()
@@ -133,17 +137,55 @@ def rename_delete_and_undo(visit: Visit, service: Service) -> None:
     menu.locator(".error:has-text('there is a task seen already')").wait_for()
     name.fill("renamed")
     name.press("Enter")
-    stands("renamed")
-    undo.click()
-    stands("another")
+    stands("Task another is called renamed now.", chosen="renamed")
+    undo()
+    stands("Task renamed is called another now.", chosen="another")
     order("Delete the task")
-    stands(newest(), deleted="another")
-    undo.click()
-    stands("another")
+    stands("Task another is deleted; all of it is kept.", deleted="another")
+    undo()
+    stands("Task another is back.", chosen="another")
     order("Delete the task")
-    stands(newest(), deleted="another")
+    stands("Task another is deleted; all of it is kept.", deleted="another")
     order("Bring back")
-    stands("another")
+    stands("Task another is back.", chosen="another")
+
+
+def edit_the_scene(visit: Visit, service: Service) -> None:
+    """Add a box to the scene `empty`, see it, and save it; undo that, and save it as another scene."""
+    page, message = visit.page, visit.page.locator("#message")
+    tab(visit, "scene")
+    page.wait_for_selector("#scene-state:has-text('This is version 1, of the settings')")
+    assert page.locator("#scene-name").input_value() == "empty"  # that of the task
+    page.select_option("#shape-kind", label="a box")
+    page.locator("#shape-add").click()
+    enter(visit, "#shape-position-x", "432.1")
+    visit.wait(lambda: visit.place("/scene/box/<object>")[0, 3] == pytest.approx(0.4321))
+    enter(visit, "#shape-size-2", "-1")
+    message.locator(".error:has-text('must be a number from')").wait_for()
+    assert len(service.station.get_scene("empty").scene.obstacles) == 1  # only the page knows of it
+    page.locator("#scene-save").click()
+    message.get_by_text("Saved as version 2 of scene empty").wait_for()
+    box = service.station.get_scene("empty").scene.obstacles[1]
+    assert (box.name, box.kind) == ("box", "box")
+    assert [*box.position, *box.size] == pytest.approx([0.4321, 0.0, 0.55, 0.1, 0.1, 0.1])
+    message.get_by_role("button", name="Undo").click()
+    message.get_by_text("Scene empty is as it was before").wait_for()
+    assert len(service.station.get_scene("empty").scene.obstacles) == 1
+    page.locator("#scene-undo:enabled").click()
+    page.locator("#scene-save-name").fill("a b")
+    page.locator("#scene-save").click()
+    message.locator(".error:has-text('cannot name a scene')").wait_for()
+    page.locator("#scene-save-name").fill("mine")
+    page.locator("#scene-save").click()
+    message.get_by_text("Scene mine is made").wait_for()
+    assert "mine" in [scene.name for scene in service.station.scenes()]
+    tab(visit, "run")  # the view shows what the task is done in again
+    visit.wait(lambda: not any(path.startswith("/scene/box") for path in visit.paths()))
+
+
+def enter(visit: Visit, field: str, value: str) -> None:
+    visit.page.locator(field).fill(value)
+    visit.page.locator(field).press("Enter")
 
 
 def test_no_request_leaves_the_machine(visit: Visit, service: Service) -> None:
@@ -239,7 +281,9 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
         learn(service, TASK)
         visit = Visit(browser, service.url)
         choose(visit, TASK)
-        visit.page.route("**/api/v1/robot", named_joints)  # it comes back with another arm
+        robot = httpx.get(f"{service.url}/api/v1/robot", timeout=HANG, trust_env=False).json()
+        robot["joints"][1]["name"] = "shoulder"
+        visit.page.route("**/api/v1/robot", lambda route: route.fulfill(json=robot))  # it comes back with another arm
         service.process.terminate()
         assert service.wait() == 0
     page = visit.page
@@ -260,7 +304,7 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
         again.station.make_task("made-meanwhile")
         page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached")
         page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")
-        visit.wait(lambda: page.evaluate("teachpath.state().robot.joints[1].name") == "axis 1")
+        visit.wait(lambda: page.evaluate("teachpath.state().robot.joints[1].name") == "shoulder")
         visit.wait(lambda: page.locator("#connection").inner_text() == "Connected")
         visit.wait(lambda: "At rest" in page.locator("#arm .state").inner_text())
         page.locator("#events-button").click()

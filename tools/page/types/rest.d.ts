@@ -32,8 +32,10 @@ declare global {
   type Robot = Schemas["Robot"];
   type Run = Schemas["Run"];
   type RunSummary = Schemas["RunSummary"];
+  type SavedScene = Schemas["SavedScene"];
   type SavedVersion = Schemas["SavedVersion"];
   type Scene = Schemas["Scene"];
+  type SceneVersion = Schemas["SceneVersion"];
   type Score = Schemas["Score"];
   type Shape = Schemas["Shape"];
   type StreamStatistics = Schemas["StreamStatistics"];

@@ -1,0 +1,113 @@
+// Saving a scene: under which name, by whom and why; every saving can be undone.
+import { put, remove, resourcePath } from "../api.js";
+import { block, element } from "../elements.js";
+import { icon } from "../icons.js";
+import { isName, nameRefusal } from "../names.js";
+import { sceneBody } from "./scene_draft.js";
+
+/** @typedef {import("./scene_draft.js").SceneDraft} SceneDraft */
+
+const PLANS = "Ways that were certified in the version before do not start in this one: certify them again.";
+const FORM = "scene-form";
+const UNCHANGED = "Nothing was changed since this version.";
+const AUTHOR_KEY = "operator"; // who works at this browser, also for control of the arm
+
+export class SceneSaving {
+  isBusy = false; // what the service has may be newer than what the draft knows of it
+
+  /**
+   * @param {HTMLElement} place
+   * @param {HTMLElement} foot where its button goes, always in view
+   * @param {Context} context
+   * @param {(name: string) => Promise<void>} reopen shows a scene as the service has it, after it was saved
+   */
+  constructor(place, foot, { messages, attempt }, reopen) {
+    this.messages = messages;
+    this.reopen = reopen;
+    /** @type {SceneDraft | null} */
+    this.draft = null;
+    this.name = textInput("save-name", 64);
+    this.author = textInput("author", 80);
+    this.note = textInput("note", 2000);
+    this.author.value = localStorage.getItem(AUTHOR_KEY) ?? "";
+    this.verb = document.createTextNode("");
+    this.button = element(
+      "button",
+      { type: "submit", id: "scene-save", form: FORM, class: "primary" },
+      icon("save"),
+      this.verb,
+    );
+    const fields = Object.entries({ "Save as": this.name, Author: this.author, Note: this.note });
+    const form = element(
+      "form",
+      { id: FORM, class: "saving" },
+      fields.map(([text, input]) => element("label", {}, text, input)),
+    );
+    place.append(form);
+    foot.append(this.button);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const { draft } = this;
+      if (draft) attempt(() => this.#save(draft));
+    });
+  }
+
+  /** Whether it would be saved as another scene. */
+  get isOther() {
+    return this.draft !== null && this.name.value.trim() !== this.draft.name;
+  }
+
+  /** @param {SceneDraft | null} draft @param {string} missing what somebody may not do here; "": nothing */
+  show(draft, missing) {
+    if (draft && draft.name !== this.draft?.name) this.name.value = draft.name;
+    this.draft = draft;
+    block(this.button, missing || (draft?.isEdited || this.isOther ? "" : UNCHANGED));
+    this.verb.data = this.isOther ? "Save as another scene" : "Save version";
+  }
+
+  /** @param {SceneDraft} draft a refusal leaves it as it is */
+  async #save(draft) {
+    const [wanted, scene, before] = [this.name.value.trim(), draft.scene, draft.original];
+    if (!isName(wanted)) throw new Error(`${nameRefusal("scene", wanted)}.`);
+    const [author, note] = [this.author.value, this.note.value];
+    localStorage.setItem(AUTHOR_KEY, author);
+    const isOther = wanted !== draft.name;
+    const place = resourcePath("scenes", wanted);
+    /** @type {SceneVersion} */
+    const saved = await this.#order(async () => {
+      const answer = await put(place, sceneBody(scene, { author, note, base: isOther ? 0 : draft.base }));
+      if (isOther) draft.revert();
+      else draft.saved(answer.number, scene);
+      return answer;
+    });
+    this.note.value = "";
+    await this.reopen(wanted);
+    const undo = async () => {
+      const details = { author, note: `as it was before version ${saved.number}`, base: saved.number };
+      await this.#order(async () => {
+        if (isOther) return remove(place);
+        const { number } = await put(place, sceneBody(before, details));
+        draft.saved(number, before);
+        return draft.revert();
+      });
+      await this.reopen(draft.name);
+      this.messages.show(isOther ? `Scene ${wanted} is removed.` : `Scene ${wanted} is as it was before.`);
+    };
+    const said = isOther ? `Scene ${wanted} is made.` : `Saved as version ${saved.number} of scene ${wanted}. ${PLANS}`;
+    this.messages.show(said, "note", { label: "Undo", order: undo });
+  }
+
+  /** @template T @param {() => Promise<T>} order after which the draft knows what the service has */
+  async #order(order) {
+    this.isBusy = true;
+    try {
+      return await order();
+    } finally {
+      this.isBusy = false;
+    }
+  }
+}
+
+/** @param {string} id @param {number} length */
+const textInput = (id, length) =>
+  element("input", { type: "text", id: `scene-${id}`, maxlength: length, autocomplete: "off" });

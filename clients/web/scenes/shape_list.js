@@ -1,0 +1,110 @@
+// What a scene is made of: a list to choose from, and what is added, copied and taken away.
+import { block, element, option } from "../elements.js";
+import { copyOf, newShape, PARTS, shapeAt, shapesOf, withNewShape, withoutShape } from "./scene_draft.js";
+
+/** @typedef {import("./scene_draft.js").Part} Part */
+/** @typedef {import("./scene_draft.js").Place} Place */
+
+/** @type {Record<Part, string>} */
+const TITLES = {
+  obstacles: "What stands there",
+  carried: "The object where it lies",
+  keep_in: "Zones that the arm stays inside",
+  keep_out: "Zones that the arm stays out of",
+};
+
+/** What can be added: its words, the part that it belongs to, its kind. @type {[string, Part, "box" | "cylinder" | "sphere"][]} */
+const ADDITIONS = [
+  ["a box", "obstacles", "box"],
+  ["a cylinder", "obstacles", "cylinder"],
+  ["a sphere", "obstacles", "sphere"],
+  ["a box to carry", "carried", "box"],
+  ["a cylinder to carry", "carried", "cylinder"],
+  ["a box to stay inside", "keep_in", "box"],
+  ["a box to stay out of", "keep_out", "box"],
+  ["a cylinder to stay out of", "keep_out", "cylinder"],
+];
+const NOT_CHOSEN = "Choose a shape in the list first.";
+
+export class ShapeList {
+  /**
+   * @param {HTMLElement} place
+   * @param {{scene: () => Scene | null, choose: (place: Place | null) => void,
+   *          change: (scene: Scene, what: string, place: Place | null) => void}} editor
+   */
+  constructor(place, editor) {
+    this.editor = editor;
+    /** @type {Place | null} */
+    this.chosen = null;
+    this.list = element("select", { id: "scene-shapes", size: "8", "aria-label": "What the scene is made of" });
+    this.kinds = element("select", { id: "shape-kind", "aria-label": "What to add" });
+    this.kinds.append(...ADDITIONS.map(([text], k) => option(k, text)));
+    this.addButton = element("button", { type: "button", id: "shape-add" }, "Add");
+    this.copyButton = element("button", { type: "button", id: "shape-copy" }, "Duplicate");
+    this.removeButton = element("button", { type: "button", id: "shape-remove" }, "Remove");
+    place.append(
+      this.list,
+      element("p", { class: "buttons" }, this.kinds, this.addButton, this.copyButton, this.removeButton),
+    );
+    this.list.addEventListener("change", () => editor.choose(placeOf(this.list.value)));
+    this.addButton.addEventListener("click", () => this.#add());
+    this.copyButton.addEventListener("click", () => this.#copy());
+    this.removeButton.addEventListener("click", () => this.#remove());
+  }
+
+  /** @param {Scene | null} scene @param {Place | null} chosen */
+  show(scene, chosen) {
+    this.chosen = chosen;
+    const groups = scene ? PARTS.map((part) => group(scene, part)).filter((one) => one.children.length) : [];
+    const isSame = groups.map((one) => one.outerHTML).join("") === this.list.innerHTML;
+    if (!isSame) this.list.replaceChildren(...groups);
+    this.list.value = chosen ? placeKey(chosen) : "";
+    for (const button of [this.copyButton, this.removeButton]) block(button, chosen ? "" : NOT_CHOSEN);
+    block(this.addButton, scene ? "" : "The scene is not read yet.");
+  }
+
+  #add() {
+    const [text, part, kind] = ADDITIONS[Number(this.kinds.value)];
+    const scene = this.editor.scene();
+    if (!scene) return;
+    const made = withNewShape(scene, part, newShape(scene, part, kind));
+    this.editor.change(made.scene, `adding ${text}`, made.place);
+  }
+
+  #copy() {
+    const [scene, shape] = this.#current();
+    if (!scene || !shape || !this.chosen) return;
+    const part = this.chosen.part === "carried" ? "obstacles" : this.chosen.part; // there is one object
+    const made = withNewShape(scene, part, copyOf(scene, shape));
+    this.editor.change(made.scene, `duplicating ${shape.name}`, made.place);
+  }
+
+  #remove() {
+    const [scene, shape] = this.#current();
+    if (scene && shape && this.chosen)
+      this.editor.change(withoutShape(scene, this.chosen), `taking ${shape.name} away`, null);
+  }
+
+  /** @returns {[Scene | null, Shape | null]} */
+  #current() {
+    const scene = this.editor.scene();
+    return [scene, scene && shapeAt(scene, this.chosen)];
+  }
+}
+
+/** @param {Place} place */
+const placeKey = ({ part, index }) => `${part} ${index}`;
+
+/** @param {string} value @returns {Place | null} */
+function placeOf(value) {
+  const [part, index] = value.split(" ");
+  return value ? { part: /** @type {Part} */ (part), index: Number(index) } : null;
+}
+
+/** @param {Scene} scene @param {Part} part */
+function group(scene, part) {
+  const rows = shapesOf(scene, part).map(({ name, kind }, index) =>
+    option(placeKey({ part, index }), name === kind ? name : `${name}, a ${kind}`),
+  );
+  return element("optgroup", { label: TITLES[part] }, rows);
+}
