@@ -6,6 +6,7 @@ const THEMES = {
   dark: { background: 0x171b20, grid: 0x333c46, ground: 0.45, light: 0.78 },
 };
 
+export const GRID_CELL = 0.25; // [m]
 const MIN_GAP = 0.01; // [m] between the arm's base and the floor, from which on a stand is drawn
 
 /**
@@ -86,7 +87,7 @@ function addLights(group) {
 }
 
 // One segment a cell: long lines that pass behind the camera vanish in some software renderers.
-function createGrid(cells = 16, size = 0.25) {
+function createGrid(cells = 16, size = GRID_CELL) {
   const { THREE } = globalThis.MeshCat;
   /** @type {number[]} */
   const points = [];

@@ -1,8 +1,10 @@
 // The controls of the view: which layers are shown, from where one looks, by buttons and by the keyboard.
 import { VIEWPOINTS } from "./camera.js";
-import { closestData } from "./elements.js";
+import { closestData, element } from "./elements.js";
+import { GRID_CELL } from "./environment.js";
 import { sampleCurve } from "./polyline.js";
 import { selectedPath } from "./store.js";
+import { formatLength } from "./texts.js";
 
 const TURN = Math.PI / 24; // [rad] by an arrow key
 const ZOOM = 1.15;
@@ -26,6 +28,7 @@ export function connectViewControls(view, store) {
       view.setLayerVisible(dataset.layer ?? "", /** @type {HTMLInputElement} */ (box).checked);
     });
   }
+  document.querySelector(".meanings")?.append(element("span", {}, `grid ${formatLength(GRID_CELL)}`));
   /** @param {string} from a viewpoint, or "way": the chosen one as near as it goes */
   const look = (from) => {
     const path = selectedPath(store.state);
