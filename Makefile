@@ -106,7 +106,8 @@ programs:
 	@$(SEEN) nginx >/dev/null 2>&1 || \
 		echo "no nginx found: the tests behind a proxy will be skipped; get it with: sudo apt-get install nginx-light"
 
-# The system tests run one after the other, the rest beside them; they wait so much that two cores have work for three.
+# Tests that move arms run one after the other, so do those that draw pages, and the rest beside them: they wait so much
+# that two cores have work for three.
 test: check programs
 	$(BIN)/python -m pytest -n 3 --no-loadscope-reorder $(ARGS)
 

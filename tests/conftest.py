@@ -84,24 +84,33 @@ def postgres() -> Iterator[Server]:
         yield server
 
 
-# System tests in which no arm moves and no page is drawn: they may run beside another one.
-UNDEMANDING = {
-    f"tests/system/test_{name}.py"
-    for name in (
-        "broken_storage", "crashes", "devices", "disk", "evaluate", "hands_free", "help", "kill", "lines", "other_user",
-        "recording", "several_machines", "station", "tracker_check", "wheel",
-    )
-}  # fmt: skip
+def system_modules(*names: str) -> set[str]:
+    return {f"tests/system/test_{name}.py" for name in names}
+
+
+# System tests that draw pages and move no arm.
+DRAWING = system_modules(
+    "behind_nginx", "camera", "editing", "import_page", "late_answers", "other_machine", "page", "review_package",
+    "showing", "sign_in", "view",
+)  # fmt: skip
+# System tests that do neither: each module may run beside any other.
+UNDEMANDING = system_modules(
+    "broken_storage", "crashes", "cut_router", "devices", "disk", "evaluate", "hands_free", "help", "hostile", "kill",
+    "lines", "other_user", "recording", "several_machines", "station", "tracker_check", "wheel",
+)  # fmt: skip
+LONGEST = ("moving", "drawing")
 
 
 def scope(nodeid: str) -> str:
-    """What one worker runs in one go: the system tests, which take longest, or a module of the rest."""
+    """What one worker runs in one go: all system tests that move the arm, all that draw pages, or another module."""
     module = nodeid.partition("::")[0]
-    return "tests/system" if module.startswith("tests/system/") and module not in UNDEMANDING else module
+    if not module.startswith("tests/system/") or module in UNDEMANDING:
+        return module
+    return "drawing" if module in DRAWING else "moving"
 
 
 class SystemBesideTheRest(LoadScopeScheduling):
-    """One worker runs the system tests, one after the other, while others run whole modules of the rest."""
+    """One worker moves arms, one test after the other, and one draws pages, while others run modules of the rest."""
 
     def _split_scope(self, nodeid: str) -> str:
         return scope(nodeid)
@@ -109,7 +118,8 @@ class SystemBesideTheRest(LoadScopeScheduling):
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with what takes longest."""
-    items.sort(key=lambda item: scope(item.nodeid) != "tests/system")
+    order = {name: number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(scope(item.nodeid), len(order)))
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> SystemBesideTheRest:

@@ -120,6 +120,7 @@ def test_a_start_that_is_not_answered_in_time_is_stopped_should_it_begin_later(d
     idle = ExecutorStatus()
     handle = desk.station.bus.serve(desk.station.keys.executor_command, answer)
     with executor(desk, idle, idle) as puts:
+        wait_until(lambda: not desk.station.executions.is_moving(), "nothing is under way")
         refused(desk.post("/executions", {"plan": planned(desk.station, "plan-late")}), 503, "not there in time")
         newest = desk.get("/executions").json()[0]
         wait_until(lambda: newest["id"] in [command.execution for command in puts], "it is stopped")

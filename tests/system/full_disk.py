@@ -68,6 +68,7 @@ class Trial:
         self.send(samples[:60])
         faults = self.recorder.faults()
         self.send(samples[60:])
+        self.recorder.wait_for_takes()
         return {"faults": faults, "demonstrations": len(self.status().demonstrations), "files": self.files()}
 
     def send(self, samples: list[Sample]) -> None:
