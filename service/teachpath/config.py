@@ -25,7 +25,7 @@ from teachpath.io.import_settings import ImportSettings
 from teachpath.io.meshes import read_hull
 from teachpath.io.store.object_storage import check_url
 from teachpath.io.store.settings import StoreSettings
-from teachpath.jobs.settings import JobSettings
+from teachpath.jobs.settings import JobSettings, check_executor
 from teachpath.learning.settings import LearningSettings
 from teachpath.live.preview.settings import PreviewSettings
 from teachpath.logs import LogSettings
@@ -123,6 +123,7 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
         _check_names("station", [settings.store.station])
     if settings.store.recordings:
         check_url(settings.store.recordings)
+    check_executor(settings.jobs.executor)
     _check_calibrations(settings.calibrations)
     _check_scenes(settings.scenes)
     return settings

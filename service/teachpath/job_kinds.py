@@ -12,17 +12,26 @@ from teachpath.io.documents import from_document
 from teachpath.io.store.recordings import RECORDINGS
 from teachpath.io.store.store import Store
 from teachpath.jobs import worker
+from teachpath.jobs.executors import Work
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.planning.signature import CalibrationScope, SigningKey
 from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, PreparedImport, prepare_imports
 from teachpath.offline.import_target import import_calibration, import_scene, starts_at_object
-from teachpath.offline.learning_job import StoredDemonstrations, learn_stored, recut_stored
+from teachpath.offline.learning_job import (
+    StoredDemonstrations,
+    learn_read,
+    read_to_learn,
+    read_to_recut,
+    recut_read,
+)
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Scene, Task
 from teachpath.robot.object_poses import ObjectPoses
 from teachpath.robot.scenes import Scenes
+
+PLANNING = Work(worker.plan_path, worker.without_signer, worker.sign_planned)
 
 
 @dataclass(frozen=True)
@@ -46,8 +55,8 @@ class LearningKinds:
     def by_name(self) -> dict[str, JobKind]:
         """Return these kinds of jobs by the names that REST gives them."""
         return {
-            "learn": JobKind(self._learning_input, learn_stored, self._store_run),
-            "recut": JobKind(self._recut_input, recut_stored, self._store_run),
+            "learn": JobKind(self._learning_input, Work(learn_read, read_to_learn), self._store_run),
+            "recut": JobKind(self._recut_input, Work(recut_read, read_to_recut), self._store_run),
         }
 
     def _learning_input(self, job: Job) -> tuple[StoredDemonstrations, LearningSettings]:
@@ -111,9 +120,13 @@ class JobKinds:
         """Return the kinds of jobs by the names that REST gives them."""
         return {
             **LearningKinds(self.store, self.settings, self.calibrations, self.scenes).by_name(),
-            "plan": JobKind(self._planning_input, worker.plan_path, self._store_plan),
+            "plan": JobKind(self._planning_input, PLANNING, self._store_plan),
             "import": JobKind(
-                self._import_input, prepare_imports, self._store_import, lane="files", clean_up=self._remove_uploads
+                self._import_input,
+                Work(prepare_imports),
+                self._store_import,
+                lane="files",
+                clean_up=self._remove_uploads,
             ),
         }
 

@@ -9,6 +9,7 @@ from typing import Any
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
+from teachpath.jobs.executors import Work
 from teachpath.jobs.jobs import JobKind, Jobs
 from teachpath.jobs.settings import JobSettings
 from teachpath.records import Job, Learned
@@ -33,7 +34,7 @@ def job_service(url: str, folder: str, *, station: str = "cell", role: str = "wo
     def prepare(job: Job) -> tuple[Any, ...]:
         return (job.request["reports"],)
 
-    kinds = {"learn": JobKind(prepare, learn, lambda job, made: store.finish_learning(job.id, made))}
+    kinds = {"learn": JobKind(prepare, Work(learn), lambda job, made: store.finish_learning(job.id, made))}
     return store, Jobs(MemoryBus(), Keys("test"), store, JobSettings(), kinds)
 
 

@@ -53,6 +53,7 @@ DOORS = {
     GENERATED: ["io/wire"],
     "zenoh": ["io/bus.py"],
     "json5": ["io/bus_config.py"],
+    "distributed": ["jobs/cluster.py", "jobs/cluster_executor.py", "jobs/cluster_worker.py"],
     "argon2": ["access/passwords.py"],
     "cryptography": ["io/certificates.py", "io/web_certificates.py"],
     "joserfc": ["io/identity_provider.py"],

@@ -20,7 +20,13 @@ from tests.waiting import HANG, wait_until
 pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
-EXTRAS = {"lerobot": "pyarrow.parquet", "postgres": "psycopg", "ros": "rosbags.highlevel", "s3": "obstore.store"}
+EXTRAS = {
+    "dask": "distributed",
+    "lerobot": "pyarrow.parquet",
+    "postgres": "psycopg",
+    "ros": "rosbags.highlevel",
+    "s3": "obstore.store",
+}
 CLIENT = "import teachpath_client, sys; print(teachpath_client.__version__)"
 LEARN = """
 import numpy as np, teachpath

@@ -1,36 +1,18 @@
-"""One process that does the jobs of some kinds in their order, each within limits of memory and time."""
+"""Jobs of some kinds that are done in their order, one after another."""
 
 from __future__ import annotations
 
 import logging
 import queue
 import threading
-import time
 from collections.abc import Callable
-from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
-from dataclasses import dataclass
-from multiprocessing.queues import Queue
-from typing import Any, Final
+from typing import Any
 
-from teachpath.errors import Cancelled, OverLimit
-from teachpath.jobs import worker
-from teachpath.jobs.pool import KillablePool
-from teachpath.process_server import CONTEXT
+from teachpath.jobs.executors import JobExecutor, Work
 
 log = logging.getLogger("teachpath")
 
-POLL_INTERVAL: Final = 0.1  # [s] between two looks at whether a job was cancelled or takes too long
-CANCEL_GRACE: Final = 3.0  # [s] after which a cancelled job that reports nothing is ended with its process
-
-
-@dataclass(frozen=True)
-class LaneLimits:
-    """What a job of a lane may take: memory beside its libraries [bytes], and time [s]."""
-
-    memory: int
-    duration: float
+Orders = queue.SimpleQueue[str | None]
 
 
 class JobLane:
@@ -38,23 +20,16 @@ class JobLane:
 
     Args:
         name: of its thread.
-        limits: of each of its jobs.
-        progress: receives the reports of its process.
+        executor: works on its jobs.
         process: does the job of a key; it calls `work`.
+        orders: keys of jobs that wait; several lanes may take from the same.
     """
 
     def __init__(
-        self,
-        name: str,
-        limits: LaneLimits,
-        progress: Queue[tuple[str, float, str]],
-        process: Callable[[JobLane, str], None],
+        self, name: str, executor: JobExecutor, process: Callable[[JobLane, str], None], orders: Orders
     ) -> None:
-        self.name, self._limits, self._process = name, limits, process
-        self._queue: queue.SimpleQueue[str | None] = queue.SimpleQueue()
-        self._cancel = CONTEXT.Event()
+        self.name, self._executor, self._process, self._orders = name, executor, process, orders
         self._stopping = threading.Event()
-        self._pool = KillablePool(worker.init_worker, progress, self._cancel, limits.memory)
         self._thread = threading.Thread(target=self._run, name=f"jobs: {name}", daemon=True)
         self.running = ""
 
@@ -62,12 +37,14 @@ class JobLane:
         """Begin to work."""
         self._thread.start()
 
-    def stop(self) -> None:
-        """Stop at once, even in the middle of a job."""
+    def request_stop(self) -> None:
+        """Stop at once, even in the middle of a job; `join` waits for it."""
         self._stopping.set()
-        self._cancel.set()
-        self._queue.put(None)
-        self._pool.close()
+        self._orders.put(None)
+        self._executor.close()
+
+    def join(self) -> None:
+        """Wait until it has stopped."""
         if self._thread.ident is not None:
             self._thread.join(timeout=10.0)
 
@@ -82,58 +59,20 @@ class JobLane:
 
     def put(self, key: str) -> None:
         """Queue a job."""
-        self._queue.put(key)
+        self._orders.put(key)
 
     def cancel(self) -> None:
         """Cancel the running job."""
-        self._cancel.set()
+        self._executor.cancel()
 
-    def work(self, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
-        """Return what `function` returns for the running job.
-
-        Raises:
-            Cancelled: the job was cancelled.
-            OverLimit: it took too much time or memory.
-            BrokenProcessPool: its process died; another one starts with the next job.
-        """
-        try:
-            return self._await(self._pool.submit(worker.work, self.running, function, inputs))
-        except MemoryError:
-            self._pool.kill()
-            raise OverLimit(
-                f"it needs over {self._limits.memory} bytes of memory, the limit; give it less, or raise the setting "
-                "(jobs.max_memory, for files jobs.max_file_memory)"
-            ) from None
-        except BrokenProcessPool:
-            self._pool.kill()
-            raise
-
-    def _await(self, future: Future[Any]) -> Any:
-        deadline, grace_end = time.monotonic() + self._limits.duration, float("inf")
-        while True:
-            try:
-                return future.result(timeout=POLL_INTERVAL)
-            except TimeoutError:
-                if future.done():
-                    raise
-            now = time.monotonic()
-            if self._cancel.is_set():
-                grace_end = min(grace_end, now + CANCEL_GRACE)
-            if now > grace_end:
-                self._pool.kill()
-                raise Cancelled("cancelled by the operator; its process was ended")
-            if now > deadline:
-                self._pool.kill()
-                raise OverLimit(
-                    f"it takes over {self._limits.duration:g} s, the limit; give it less, or raise the setting "
-                    "(jobs.max_duration, for files jobs.max_file_duration)"
-                )
+    def work(self, work: Work, inputs: tuple[Any, ...]) -> Any:
+        """Return the outcome of the running job; raises as `JobExecutor.work`."""
+        return self._executor.work(self.running, work, inputs)
 
     def _run(self) -> None:
-        with suppress(BrokenProcessPool):  # told to stop already
-            self._pool.submit(worker.begin)
-        while (key := self._queue.get()) is not None and not self._stopping.is_set():
-            self._cancel.clear()
+        self._executor.begin()
+        while (key := self._orders.get()) is not None and not self._stopping.is_set():
+            self._executor.renew()
             self.running = key
             try:
                 self._process(self, key)

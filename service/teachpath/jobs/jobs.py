@@ -9,13 +9,15 @@ from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final
 
 from teachpath.errors import Cancelled, Conflict, NotFound, QueueFull, StorageUnavailable, TeachpathError
 from teachpath.io.wire import encode_progress
+from teachpath.jobs.executors import Work
 from teachpath.jobs.idempotency import begun_by, job_id
 from teachpath.jobs.job_faults import disk_sentence, evidence_of
-from teachpath.jobs.job_lane import JobLane, LaneLimits
+from teachpath.jobs.job_lane import JobLane
+from teachpath.jobs.lanes import LaneName, Lanes
 from teachpath.jobs.settings import JobSettings
 from teachpath.jobs.shared_jobs import OwnJobs, SharedJobs
 from teachpath.logs import continue_request, request_number
@@ -32,8 +34,8 @@ log = logging.getLogger("teachpath")
 LOG_PART: Final = "worker"  # of the station, in the log: the service tells what its working processes do
 STORE_INTERVAL: Final = 1.0  # [s] after which a job is tried again that the store could not take
 
-# A kind of job: `prepare` gathers its input from the store, `work` (a function of `worker`) runs in the other process,
-# and `finish` stores the outcome and marks the job succeeded in one transaction.
+# A kind of job: `prepare` gathers its input from the store, `work` runs in another process, and `finish` stores the
+# outcome and marks the job succeeded in one transaction.
 Prepare = Callable[[Job], tuple[Any, ...]]
 Finish = Callable[[Job, Any], str]
 
@@ -43,14 +45,14 @@ class JobKind:
     """One kind of job.
 
     Attributes:
-        lane: the process that does it; jobs of one lane wait for each other.
+        lane: where it is done; jobs of one lane wait for each other.
         clean_up: called when a job has ended, however it did.
     """
 
     prepare: Prepare
-    work: Callable[..., Any]
+    work: Work
     finish: Finish
-    lane: Literal["learning", "files"] = "learning"
+    lane: LaneName = "learning"
     clean_up: Callable[[Job], None] = lambda job: None
 
 
@@ -79,17 +81,18 @@ class Jobs:
         self._kinds = kinds
         self._on_finished = on_finished
         self._progress = CONTEXT.Queue()
-        limits = {
-            "learning": LaneLimits(settings.max_memory, settings.max_duration),
-            "files": LaneLimits(settings.max_file_memory, settings.max_file_duration),
-        }
-        self._lanes = {name: JobLane(name, each, self._progress, self._run) for name, each in limits.items()}
+        self._lanes = Lanes(settings, self._progress, self._run)
         self._lock = threading.Lock()
         self._requests: dict[str, str] = {}  # numbers of the requests that queued the unfinished jobs
         self._submitters: dict[str, str] = {}  # of the unfinished jobs: who submitted them
         self._queued: set[str] = set()  # ids that wait in a lane
         own = OwnJobs(
-            list(kinds), self._running, self._break_off, self._enqueue, self._on_changed_elsewhere, self._forget_ended
+            list(kinds),
+            self._lanes.running,
+            self._lanes.cancel,
+            self._enqueue,
+            self._on_changed_elsewhere,
+            self._forget_ended,
         )
         self._shared = SharedJobs(store, own)
         self._reporter = threading.Thread(target=self._pass_on_progress, name="job progress", daemon=True)
@@ -102,15 +105,13 @@ class Jobs:
                 self._enqueue(job)
         self._reporter.start()
         self._shared.start()
-        for lane in self._lanes.values():
-            lane.start()
+        self._lanes.start()
 
     def stop(self) -> None:
         """Stop at once; a running job waits in the store for the next start, or for another service."""
         self._shared.stop()
-        under_way = self._running()
-        for lane in self._lanes.values():
-            lane.stop()
+        under_way = self._lanes.running()
+        self._lanes.stop()
         with suppress(StorageUnavailable):
             self._store.claims.give_back(under_way)
         self._progress.put(None)
@@ -179,31 +180,19 @@ class Jobs:
     def cancel(self, key: str) -> Job:
         """Cancel a queued or running job; raises Conflict when it has already ended."""
         job = self._store.job(key)
-        if job.state is JobState.RUNNING and key == self._lane(job).running:
-            self._lane(job).cancel()
+        if job.state is JobState.RUNNING and self._lanes.cancel(key):
             return self._store.job(key)
         cancelled = self._store.claims.cancel(key)
         if cancelled.finished_ns:
             self._announce(cancelled)
         return cancelled
 
-    def _lane(self, job: Job) -> JobLane:
-        return self._lanes[self._kinds[job.kind].lane]
-
     def _enqueue(self, job: Job) -> None:
         with self._lock:
-            if job.id in self._queued or job.id in self._running():
+            if job.id in self._queued or job.id in self._lanes.running():
                 return
             self._queued.add(job.id)
-        self._lane(job).put(job.id)
-
-    def _running(self) -> list[str]:
-        return [lane.running for lane in self._lanes.values() if lane.running]
-
-    def _break_off(self, key: str) -> None:
-        for lane in self._lanes.values():
-            if lane.running == key:
-                lane.cancel()
+        self._lanes.put(self._kinds[job.kind].lane, job.id)
 
     def _on_changed_elsewhere(self, key: str) -> None:
         """Pass on what another service has done with a job of this station, and do what it leaves."""

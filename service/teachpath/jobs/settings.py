@@ -2,16 +2,35 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Final
 
 from annotated_types import Ge, Gt, Le
+
+from teachpath.errors import UnusableSettings
+
+LOCAL: Final = "local"
+CLUSTER: Final = re.compile(r"dask(\+tls)?://(\[[0-9a-fA-F:]+\]|[\w.-]+):(\d{1,5})", re.ASCII)
+
+
+def check_executor(executor: str) -> None:
+    """Raise UnusableSettings when a setting `jobs.executor` is no place where jobs can be done."""
+    if executor != LOCAL and not CLUSTER.fullmatch(executor):
+        raise UnusableSettings(
+            f"setting jobs.executor is {executor!r}; it should be local, or dask://HOST:PORT of a Dask scheduler (over "
+            "TLS dask+tls://HOST:PORT)"
+        )
 
 
 @dataclass(frozen=True)
 class JobSettings:
     """How background work is done."""
 
+    # where learning and planning jobs are done: local, or dask://HOST:PORT of a Dask scheduler (over TLS dask+tls://)
+    executor: str = LOCAL
+    # of them, jobs on a cluster at a time
+    cluster_jobs: Annotated[int, Ge(1), Le(1000)] = 4
     # how often a job is begun anew after its process died
     attempts: Annotated[int, Ge(1), Le(10)] = 3
     # jobs that may wait or run at a time

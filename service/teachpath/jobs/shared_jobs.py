@@ -30,7 +30,7 @@ class OwnJobs:
 
     kinds: Sequence[str]
     running: Callable[[], list[str]]
-    break_off: Callable[[str], None]
+    break_off: Callable[[str], object]
     found: Callable[[Job], None]
     changed: Callable[[str], None]
     forget_ended: Callable[[], None]

@@ -16,12 +16,13 @@ import uuid
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing import Queue, parent_process
+from multiprocessing import parent_process
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any
 
 from teachpath.errors import Cancelled, TeachpathError
+from teachpath.jobs.executors import Reports, Work
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.planning.signature import CalibrationScope, SigningKey, sign_plan
@@ -36,15 +37,15 @@ Progress = Callable[[float, str], None]
 PROGRESS_INTERVAL = 0.25
 NICENESS = 10  # of the process, so that the control loop and the service go first
 
-_progress_queue: Queue[tuple[str, float, str]] | None = None
+_progress: Reports | None = None
 _cancel: Event | None = None
 _memory_limit = 0  # bytes beside what the process has taken before its first job; 0: none, or set already
 
 
-def init_worker(progress: Queue[tuple[str, float, str]], cancel: Event, memory_limit: int) -> None:
+def init_worker(progress: Reports, cancel: Event, memory_limit: int) -> None:
     """Prepare this process: it reports to `progress`, is cancelled by `cancel`, and ends with its parent."""
-    global _progress_queue, _cancel
-    _progress_queue, _cancel = progress, cancel
+    global _progress, _cancel
+    _progress, _cancel = progress, cancel
     init_limited(memory_limit)
 
 
@@ -88,10 +89,10 @@ def begin() -> None:
     """Do nothing: with its first call this process begins."""
 
 
-def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any:
-    """Call `function(*inputs, progress=...)` for job `key`.
+def work(key: str, work: Work, inputs: tuple[Any, ...]) -> Any:
+    """Take all steps of the work for job `key`.
 
-    The work may report its progress as often as it likes, and is cancelled there. Only reports that a person could see
+    It may report its progress as often as it likes, and is cancelled there. Only reports that a person could see
     are passed on.
     """
     reported, due = "", 0.0
@@ -102,13 +103,16 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
         if _cancel is not None and _cancel.is_set():
             raise Cancelled("cancelled by the operator")
         now = time.monotonic()
-        if _progress_queue is not None and (sentence != reported or now >= due or fraction >= 1.0):
-            _progress_queue.put((key, fraction, sentence))
+        if _progress is not None and (sentence != reported or now >= due or fraction >= 1.0):
+            _progress.put((key, fraction, sentence))
             reported, due = sentence, now + PROGRESS_INTERVAL
 
     begun = time.monotonic()
     try:
-        made = function(*inputs, progress=progress)
+        loaded = work.load(*inputs) if work.load else inputs
+        made = work.function(*loaded, progress=progress)
+        if work.conclude:
+            made = work.conclude(made, *inputs)
     except (TeachpathError, MemoryError, OSError):
         raise  # a refusal, which the service tells
     except Exception:
@@ -116,6 +120,12 @@ def work(key: str, function: Callable[..., Any], inputs: tuple[Any, ...]) -> Any
         raise
     log.info("%s took %.2f s of its process", key, time.monotonic() - begun)
     return made
+
+
+def call(function: Callable[..., Any], *inputs: Any, progress: Progress) -> Any:
+    """Return `function(*inputs)`: a step of a job that reports nothing."""
+    del progress
+    return function(*inputs)
 
 
 def limit_memory() -> None:
@@ -162,12 +172,26 @@ class Signer:
     calibrations: CalibrationScope
 
 
-def plan_path(
-    path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, signer: Signer, *, progress: Progress
-) -> Plan:
-    """Plan one path, and sign the plan."""
+PlanOrder = tuple[LearnedPath, Scene, MotionSettings, Arm]
+
+
+def without_signer(path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, signer: Signer) -> PlanOrder:
+    """Return what a path is planned from; the key stays here."""
+    del signer
+    return path, scene, settings, arm
+
+
+def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, *, progress: Progress) -> Plan:
+    """Plan one path."""
     from teachpath.motion.planning.plan import plan
 
     progress(0.1, f"planning path {path.id}")
-    made = plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}")
+    return plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}")
+
+
+def sign_planned(
+    made: Plan, path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, signer: Signer
+) -> Plan:
+    """Sign a plan that was made of these."""
+    del path, scene
     return sign_plan(made, arm, settings, signer.key, issued_ns=time.time_ns(), calibrations=signer.calibrations)

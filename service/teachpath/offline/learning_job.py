@@ -1,4 +1,4 @@
-"""Learning jobs: the worker reads the recordings itself, so that the service does not."""
+"""Learning jobs: recordings are read in a process of the jobs, not in the service."""
 
 from __future__ import annotations
 
@@ -49,22 +49,44 @@ class StoredDemonstrations:
         }
 
 
-def learn_stored(stored: StoredDemonstrations, settings: LearningSettings, *, progress: worker.Progress) -> Learned:
-    """Read demonstrations and learn from them."""
-    return _placed(worker.learn_paths(stored.read(), settings, progress=progress), stored.object_pose)
+@dataclass(frozen=True)
+class ReadDemonstrations:
+    """Demonstrations that were read: the object's trajectories by their ids, and where the scene has the object."""
+
+    trajectories: dict[str, Trajectory]
+    object_pose: ObjectPose | None
 
 
-def recut_stored(
+def read_to_learn(
+    stored: StoredDemonstrations, settings: LearningSettings
+) -> tuple[ReadDemonstrations, LearningSettings]:
+    """Read what `learn_read` takes."""
+    return ReadDemonstrations(stored.read(), stored.object_pose), settings
+
+
+def learn_read(shown: ReadDemonstrations, settings: LearningSettings, *, progress: worker.Progress) -> Learned:
+    """Learn from demonstrations that were read."""
+    return _placed(worker.learn_paths(shown.trajectories, settings, progress=progress), shown.object_pose)
+
+
+def read_to_recut(
+    learned: Learned, stored: StoredDemonstrations, threshold: float | None, clusters: int | None
+) -> tuple[Learned, ReadDemonstrations, float | None, int | None]:
+    """Read what `recut_read` takes."""
+    return learned, ReadDemonstrations(stored.read(), stored.object_pose), threshold, clusters
+
+
+def recut_read(
     learned: Learned,
-    stored: StoredDemonstrations,
+    shown: ReadDemonstrations,
     threshold: float | None,
     clusters: int | None,
     *,
     progress: worker.Progress,
 ) -> Learned:
-    """Read demonstrations and cut the dendrogram of a run over them elsewhere."""
-    found = worker.recut_run(learned, stored.read(), threshold, clusters, progress=progress)
-    return _placed(found, stored.object_pose)
+    """Cut the dendrogram of a run over demonstrations that were read elsewhere."""
+    found = worker.recut_run(learned, shown.trajectories, threshold, clusters, progress=progress)
+    return _placed(found, shown.object_pose)
 
 
 def _placed(learned: Learned, scene_pose: ObjectPose | None) -> Learned:

@@ -1,4 +1,4 @@
-"""A lane does its jobs in one process, which has begun before the first of them."""
+"""A lane does its jobs in their order, in one process that has begun before the first of them."""
 
 import os
 import queue
@@ -8,7 +8,9 @@ import pytest
 
 from teachpath.errors import Cancelled
 from teachpath.jobs import worker
-from teachpath.jobs.job_lane import JobLane, LaneLimits
+from teachpath.jobs.executors import Limits, Work
+from teachpath.jobs.job_lane import JobLane, Orders
+from teachpath.jobs.local_executor import LocalExecutor
 from teachpath.process_server import CONTEXT
 from tests.waiting import HANG
 
@@ -24,24 +26,32 @@ def done() -> queue.SimpleQueue[object]:
 
 
 @pytest.fixture
-def lane(done: queue.SimpleQueue[object]) -> Iterator[JobLane]:
+def orders() -> Orders:
+    return queue.SimpleQueue()
+
+
+@pytest.fixture
+def lane(done: queue.SimpleQueue[object], orders: Orders) -> Iterator[JobLane]:
     def process(lane: JobLane, key: str) -> None:
         try:
-            done.put((key, lane.work(process_id, ())))
+            done.put((key, lane.work(Work(process_id), ())))
         except Cancelled as error:
             done.put((key, error))
 
     reports = CONTEXT.Queue()
-    lane = JobLane("test", LaneLimits(0, HANG), reports, process)
+    lane = JobLane("test", LocalExecutor(Limits(0, HANG), reports), process, orders)
     yield lane
-    lane.stop()
+    lane.request_stop()
+    lane.join()
     reports.close()
     reports.cancel_join_thread()
 
 
-def test_jobs_are_done_in_their_order_in_one_process(lane: JobLane, done: queue.SimpleQueue[object]) -> None:
+def test_jobs_are_done_in_their_order_in_one_process(
+    lane: JobLane, orders: Orders, done: queue.SimpleQueue[object]
+) -> None:
     for key in ("one", "two", "three"):
-        lane.put(key)
+        orders.put(key)
     lane.start()
     keys, processes = zip(*(done.get(timeout=HANG) for _ in range(3)), strict=True)
     assert keys == ("one", "two", "three")
@@ -49,9 +59,9 @@ def test_jobs_are_done_in_their_order_in_one_process(lane: JobLane, done: queue.
     assert processes[0] != os.getpid()
 
 
-def test_a_stopped_lane_begins_no_process(lane: JobLane, done: queue.SimpleQueue[object]) -> None:
-    lane.stop()
-    lane.put("one")
+def test_a_stopped_lane_begins_no_process(lane: JobLane, orders: Orders, done: queue.SimpleQueue[object]) -> None:
+    lane.request_stop()
+    orders.put("one")
     lane.start()
-    lane.stop()
+    lane.join()
     assert done.empty()

@@ -10,6 +10,7 @@ import pytest
 from teachpath.errors import Conflict, LearningFailed, PathRefused
 from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.store import Store
+from teachpath.jobs.executors import Work
 from teachpath.jobs.jobs import JobKind, Jobs
 from teachpath.jobs.settings import JobSettings
 from teachpath.records import Failure, Job, JobState, Suggestion
@@ -64,8 +65,8 @@ class Bench:
         self.ended: queue.Queue[Job] = queue.Queue()
         self.outcomes: list[str] = []
         works = {f.__name__: f for f in (echo, refuse, block, crash, linger, fault)} | instead
-        kinds = {name: JobKind(self.prepare, work, self.finish) for name, work in works.items()}
-        kinds |= {name: JobKind(self.prepare, work, self.finish, "files") for name, work in (files or {}).items()}
+        kinds = {name: JobKind(self.prepare, Work(work), self.finish) for name, work in works.items()}
+        kinds |= {name: JobKind(self.prepare, Work(work), self.finish, "files") for name, work in (files or {}).items()}
         self.jobs = Jobs(self.bus, KEYS, store, settings, kinds, on_finished=self.ended.put)
 
     def prepare(self, job: Job) -> tuple[Any, ...]:

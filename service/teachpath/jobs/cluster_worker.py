@@ -1,0 +1,96 @@
+"""What runs in a worker of a Dask cluster: the work in a process of its own, with the limits of the station's settings.
+
+The service sends these functions by their names, so that a worker needs teachpath in the same version.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import platform
+import threading
+from collections import deque
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from multiprocessing.connection import Connection
+from typing import Any, Final
+
+from distributed import get_worker
+
+from teachpath.errors import Cancelled
+from teachpath.jobs.cluster import DAEMON
+from teachpath.jobs.executors import Limits, Work
+from teachpath.jobs.local_executor import LocalExecutor
+from teachpath.process_server import CONTEXT, start_process_server
+
+COMPARED: Final = ("teachpath", "distributed", "numpy", "scipy", "numba", "hmmlearn", "ruckig", "mujoco-core")
+LOADED: Final = ("teachpath.offline.learning_job", "teachpath.learning.relearn", "teachpath.motion.planning.plan")
+
+_lock: Final = threading.Lock()
+_running: Final[dict[str, LocalExecutor]] = {}
+_cancelled: Final[deque[str]] = deque(maxlen=1000)  # of the service's orders, which may come after their cancellation
+
+
+@dataclass(frozen=True)
+class PipeReports:
+    """Reports of one process: no lock is left taken and no report is lost where the process is killed after it."""
+
+    writer: Connection
+
+    def put(self, report: tuple[str, float, str]) -> None:
+        """Send a report."""
+        self.writer.send(report)
+
+
+def versions() -> dict[str, str]:
+    """Return the versions that service and worker have to share."""
+    found = {"Python": ".".join(platform.python_version_tuple()[:2])}
+    for name in COMPARED:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "none"
+    return found
+
+
+def examine() -> dict[str, str]:
+    """Return the versions of this worker; DAEMON where it may not begin the processes that jobs are done in."""
+    return DAEMON if multiprocessing.current_process().daemon else versions()
+
+
+def work_in_limits(order: str, work: Work, inputs: tuple[Any, ...], limits: Limits, topic: str) -> Any:
+    """Do the middle step of a job for an order of a service; raises as `LocalExecutor.work`."""
+    start_process_server(LOADED)
+    reader, writer = CONTEXT.Pipe(duplex=False)
+    worker = get_worker()
+
+    def pass_on() -> None:
+        with suppress(EOFError, OSError):  # the process has ended, maybe in the middle of a report
+            while True:
+                worker.log_event(topic, list(reader.recv()))
+
+    executor = LocalExecutor(limits, PipeReports(writer))
+    reporter = threading.Thread(target=pass_on, name="job progress", daemon=True)
+    reporter.start()
+    try:
+        with _lock:
+            if order in _cancelled:
+                raise Cancelled("cancelled by the operator")
+            _running[order] = executor
+        return executor.work(order, work, inputs)
+    finally:
+        with _lock:
+            _running.pop(order, None)
+        executor.close()
+        writer.close()
+        reporter.join()
+        reader.close()
+
+
+def cancel(order: str) -> None:
+    """Cancel an order here, and when it comes later."""
+    with _lock:
+        _cancelled.append(order)
+        executor = _running.get(order)
+    if executor:
+        executor.cancel()
