@@ -20,6 +20,7 @@ LOCAL = "http://127.0.0.1:8765"
 LEASE_HEADER = "Teachpath-Lease"
 UNTRUSTED = "CERTIFICATE_VERIFY_FAILED"  # in the text of an error of TLS
 PAGE_SIZE = 500  # entries of a list that are asked for at a time, as many as a station gives
+IDLE_TIMEOUT = 2.0  # [s] after which no connection is used again; a service closes those that are idle for 5 s
 STOP_TIMEOUT = 5.0  # [s] for the answer to a stop; a station that lives says within 2 s that nothing was confirmed
 
 
@@ -49,7 +50,12 @@ class Rest:
             headers["Authorization"] = f"Bearer {self.token}"
         trusted = trusted_authorities(self.url) or True
         self._http = httpx.Client(
-            base_url=f"{self.url}/api/v1", timeout=timeout, headers=headers, verify=trusted, trust_env=False
+            base_url=f"{self.url}/api/v1",
+            timeout=timeout,
+            headers=headers,
+            verify=trusted,
+            trust_env=False,
+            limits=httpx.Limits(keepalive_expiry=IDLE_TIMEOUT),
         )
         self.set_lease(lease)
 

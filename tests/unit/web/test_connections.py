@@ -4,6 +4,7 @@ import asyncio
 import json
 import socket
 import threading
+import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 import pytest
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse, StreamingResponse
+from starlette.responses import JSONResponse, PlainTextResponse, StreamingResponse
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
@@ -19,6 +20,7 @@ from teachpath.api.middleware import AnswersAtTheEnd, RequestLimits
 from teachpath.commands.serving import listen
 from teachpath.web.server import web_server
 from teachpath.web.settings import WebSettings
+from teachpath_client.rest import IDLE_TIMEOUT, Rest
 from tests.ports import free_port
 from tests.waiting import HANG, wait_until
 
@@ -45,6 +47,10 @@ async def wait_for_ever(request: Request) -> PlainTextResponse:
 
 async def client(request: Request) -> PlainTextResponse:
     return PlainTextResponse(f"{request.client and request.client.host} by {request.url.scheme}")
+
+
+async def port_of_client(request: Request) -> JSONResponse:
+    return JSONResponse(request.client and request.client.port)
 
 
 async def pour(request: Request) -> StreamingResponse:
@@ -74,6 +80,7 @@ def served(**settings: Any) -> Iterator[int]:
     routes = [
         Route("/", answer, methods=["GET", "POST"]),
         Route("/client", client),
+        Route("/api/v1/port", port_of_client),
         Route("/large", pour),
         Route("/never", wait_for_ever),
         WebSocketRoute("/messages", pour_messages),
@@ -200,3 +207,11 @@ def test_when_all_connections_are_used_another_is_refused_with_a_sentence() -> N
             assert page.recv(12) == b"HTTP/1.1 101"
         with opened(port) as connection:
             assert "10 connections are open, the limit" in refusal(rest(connection), 503)
+
+
+def test_the_client_uses_no_connection_again_that_the_service_may_just_close() -> None:
+    assert web_server(answer, WebSettings()).config.timeout_keep_alive > 2 * IDLE_TIMEOUT
+    with served() as port, Rest(f"http://127.0.0.1:{port}") as rest:
+        first = rest.call("GET", "/port")
+        time.sleep(IDLE_TIMEOUT + 0.1)
+        assert rest.call("GET", "/port") != first
