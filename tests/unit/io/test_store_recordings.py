@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
@@ -16,7 +17,8 @@ from scipy.spatial.transform import Rotation
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io.documents import encode
-from teachpath.io.store.mcap_records import read_records
+from teachpath.io.store.mcap_records import MAX_RECORD_SIZE, OPENING, read_records
+from teachpath.io.store.motions import read_motion
 from teachpath.io.store.recording_facts import read_facts
 from teachpath.io.store.recordings import RecordingFile, Recordings
 from teachpath.io.store.salvage import RecordingHeader, salvage
@@ -127,6 +129,22 @@ def test_a_damaged_recording_gives_no_wrong_sample(whole: Path, place: int, valu
     if fault or header is None:
         with pytest.raises(UnusableRecording, match=r"lift/damaged\.mcap is damaged .*teachpath doctor"):
             recordings.samples("lift/damaged.mcap")
+
+
+@pytest.mark.parametrize("length", [MAX_RECORD_SIZE + 1, 2**40, 2**63, 2**64 - 1])
+def test_a_damaged_length_within_a_chunk_takes_no_memory(whole: Path, length: int) -> None:
+    content = bytearray(whole.read_bytes())
+    at = 8  # behind what every MCAP file begins with
+    while content[at] != Opcode.CHUNK:
+        at += OPENING.size + OPENING.unpack_from(content, at)[1]
+    at += OPENING.size + 28  # its times, the size that it expands to, and its check sum
+    at += 4 + int.from_bytes(content[at : at + 4], "little")  # the name of its compression
+    content[at : at + 8] = length.to_bytes(8, "little")
+    damaged = whole.with_name("long.mcap")
+    damaged.write_bytes(content)
+    _, samples, fault = salvage(damaged)
+    assert (samples, fault) == ([], f"a field of it is {length} bytes long, limit {MAX_RECORD_SIZE}: it is damaged")
+    assert read_motion(damaged).fault == fault
 
 
 def test_viewers_find_the_hand_and_its_frame_beside_the_samples(tmp_path: Path) -> None:

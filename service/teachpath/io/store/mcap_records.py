@@ -6,7 +6,7 @@ import io
 import struct
 import zlib
 from collections.abc import Iterator
-from typing import BinaryIO, Final
+from typing import BinaryIO, Final, cast
 
 import lz4.frame
 import zstandard
@@ -25,6 +25,32 @@ OPENING: Final = struct.Struct("<BQ")  # of a record: its kind, and the bytes th
 MESSAGE: Final = struct.Struct("<BQHIQQ")
 
 
+class BoundedStream:
+    """What is read of a file, in pieces that are no longer than a record may be.
+
+    A record's own length is limited by the reader, but not those of its fields, and a damaged one asks for any memory.
+
+    Args:
+        stream: of the file.
+    """
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+
+    def read(self, length: int) -> bytes:
+        """Return the next bytes, at most `length`; raises UnusableRecording where that is too many."""
+        if length > MAX_RECORD_SIZE:
+            raise UnusableRecording(f"a field of it is {length} bytes long, limit {MAX_RECORD_SIZE}: it is damaged")
+        return self._stream.read(length)
+
+
+def open_records(stream: BinaryIO, *, emit_chunks: bool = False) -> Iterator[McapRecord]:
+    """Yield the records of a file, or its chunks as they are; no damage asks for more memory than records may have."""
+    bounded = cast(BinaryIO, BoundedStream(stream))
+    reader = StreamReader(bounded, emit_chunks=emit_chunks, validate_crcs=True, record_size_limit=MAX_RECORD_SIZE)
+    return iter(reader.records)
+
+
 def read_records(stream: BinaryIO, limits: ImportSettings | None = None) -> Iterator[McapRecord]:
     """Yield every record but chunks, whose records take their place.
 
@@ -36,8 +62,8 @@ def read_records(stream: BinaryIO, limits: ImportSettings | None = None) -> Iter
         UnusableRecording: it has no header, or expands to more than the limits.
         EndOfFile: it is cut off.
     """
-    records = StreamReader(stream, emit_chunks=True, validate_crcs=True, record_size_limit=MAX_RECORD_SIZE).records
-    if not isinstance(next(iter(records), None), Header):
+    records = open_records(stream, emit_chunks=True)
+    if not isinstance(next(records, None), Header):
         raise UnusableRecording("it has no MCAP header")
     expanded = count = 0
     for record in records:

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any, BinaryIO, Final
 
 from mcap.records import Channel, Header, Message, Metadata
-from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from teachpath.errors import NotFound, UnusableRecording
 from teachpath.io import documents, wire
+from teachpath.io.store.mcap_records import open_records
 from teachpath.io.store.recordings import Opener, open_new
 from teachpath.io.wire import message_types
 from teachpath.records import ExecutorStatus, JointState, JournalEntry, LearnedPath, Plan, Setpoint
@@ -171,8 +171,7 @@ def read_motion(file: Path) -> Motion:
 def _messages(stream: BinaryIO, motion: Motion) -> Any:
     """Yield (topic, message) of every message of ours; header and facts go into `motion`."""
     ours: dict[int, str] = {}
-    records = StreamReader(stream, validate_crcs=True, record_size_limit=16 * 1024 * 1024).records
-    for number, record in enumerate(records):
+    for number, record in enumerate(open_records(stream)):
         if number == 0 and not isinstance(record, Header):
             raise UnusableRecording("it has no MCAP header")
         if isinstance(record, Metadata) and record.name == HEADER:
