@@ -88,7 +88,7 @@ def system_modules(*names: str) -> set[str]:
     return {f"tests/system/test_{name}.py" for name in names}
 
 
-# System tests that draw pages and move no arm.
+# System tests that draw pages, and move an arm at most where no time is judged.
 DRAWING = system_modules(
     "behind_nginx", "camera", "editing", "import_page", "late_answers", "other_machine", "page", "review_package",
     "showing", "sign_in", "view",
