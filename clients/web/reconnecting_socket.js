@@ -57,7 +57,11 @@ export class ReconnectingSocket {
     const socket = this.#socket;
     this.#socket = null;
     clearTimeout(this.#timer);
-    socket?.close();
+    if (socket?.readyState === WebSocket.CONNECTING) {
+      socket.onopen = () => socket.close(); // closed before it is open, the browser would warn of a connection that failed
+    } else {
+      socket?.close();
+    }
   }
 
   #connect() {
