@@ -68,6 +68,8 @@ def test_a_stop_is_put_and_answered_by_the_status_that_shows_it(desk: Desk, movi
         answer = desk.post(f"/executions/{moving}/stop", headers={"Teachpath-Operator": "Ada"})
     assert answer.json()["status"] == {**answer.json()["status"], "state": "stopping", "ending": True}
     assert {(put.execution, put.who) for put in puts} == {(moving, "Ada")}
+    # Its confirmation may have come while it was repeated.
+    wait_until(lambda: "stop" not in {thread.name for thread in threading.enumerate()}, "nobody repeats that stop")
     with executor(desk, FOLLOWING, ENDING) as puts:
         assert desk.post("/stop").json()["ending"]
     assert {put.execution for put in puts} == {""}
@@ -126,3 +128,18 @@ def test_a_start_that_is_not_answered_in_time_is_stopped_should_it_begin_later(d
         wait_until(lambda: newest["id"] in [command.execution for command in puts], "it is stopped")
     handle.close()
     assert newest["status"]["state"] == "faulted"
+
+
+def test_an_order_to_an_executor_that_got_no_turn_for_a_while_is_answered_by_it(desk: Desk, moving: str) -> None:
+    heard: list[Command] = []
+
+    def answer(payload: bytes) -> bytes:
+        heard.append(wire.decode_command(payload))
+        return wire.encode_status(FOLLOWING)
+
+    wait_until(lambda: desk.station.executions.status is None, "the executor is silent")
+    handle = desk.station.bus.serve(desk.station.keys.executor_command, answer)
+    assert desk.post(f"/executions/{moving}/hold").is_success
+    handle.close()
+    assert [command.verb for command in heard] == ["hold"]
+    refused(desk.post(f"/executions/{moving}/hold"), 503, "nobody answered")

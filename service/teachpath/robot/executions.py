@@ -144,12 +144,13 @@ class Executions:
             UnusableInput: an unknown verb.
             NotFound: no such execution.
             Conflict: it is not the one that is running, or somebody else is in control.
+            Unreachable: the executor does not answer.
         """
         if command.verb not in STEERING_VERBS:
             raise UnusableInput(f"{command.verb!r} is no command; say {', '.join(STEERING_VERBS)}")
-        self.get(execution)
-        status = self.status
-        if status is None or status.execution != execution:
+        row, status = self.get(execution), self.status
+        # An executor that is silent may only have got no turn: it is asked itself what it runs.
+        if row.status.state.is_resting or (status is not None and status.execution != execution):
             raise Conflict(f"execution {execution} is not running")
         self._bus.ask(self._keys.executor_command, _message(command))
         return self.get(execution)
