@@ -38,7 +38,8 @@ class Served:
         return connect(f"ws://{self.address}/api/v1/events", **options)
 
     def call(self, method: str, resource: str, **options: Any) -> httpx.Response:
-        return httpx.request(method, f"http://{self.address}/api/v1{resource}", trust_env=False, **options)
+        address = f"http://{self.address}/api/v1{resource}"
+        return httpx.request(method, address, timeout=HANG, trust_env=False, **options)
 
 
 @pytest.fixture(scope="module")

@@ -126,7 +126,7 @@ def test_who_signs_in_again_ends_the_session_of_before(guarded: Guarded, session
 
 def test_signing_out_ends_the_session_and_its_websockets(guarded: Guarded) -> None:
     headers = {"Origin": f"http://127.0.0.1:{guarded.port}"}
-    with httpx.Client(base_url=f"{guarded.url}/api/v1", headers=headers) as page:
+    with httpx.Client(base_url=f"{guarded.url}/api/v1", headers=headers, timeout=HANG) as page:
         page.post("/session", json={"name": "anna", "password": PASSWORD}).raise_for_status()
         cookie = "; ".join(f"{name}={value}" for name, value in page.cookies.items())
         with connect(

@@ -7,6 +7,7 @@ import pytest
 from teachpath.io.wire import decode_command, encode_status
 from teachpath.records import Command, ExecutorStatus
 from tests.contract.desk import Desk
+from tests.waiting import wait_until
 
 
 def test_every_answer_has_a_number_of_its_own(desk: Desk) -> None:
@@ -21,9 +22,14 @@ def test_a_job_is_logged_under_the_number_of_its_request(desk: Desk, caplog: pyt
     with caplog.at_level(logging.INFO, logger="teachpath"):
         accepted = desk.post("/tasks/numbered/jobs", {"kind": "learn"})
         job = desk.ended(accepted)
-    said = [record for record in caplog.records if job["id"] in record.getMessage() and hasattr(record, "request")]
+
+        def of_job() -> list[logging.LogRecord]:
+            return [one for one in list(caplog.records) if job["id"] in one.getMessage() and hasattr(one, "request")]
+
+        ended = lambda: any("has no usable demonstrations" in record.getMessage() for record in of_job())  # noqa: E731
+        wait_until(ended, "its end, which was stored before, is logged")
+    said = of_job()
     assert {record.request for record in said} == {accepted.headers["teachpath-request"]}
-    assert any("has no usable demonstrations" in record.getMessage() for record in said)
     assert any(record.getMessage().startswith("POST /api/v1/tasks/numbered/jobs: 202") for record in caplog.records)
 
 

@@ -6,8 +6,9 @@ import sys
 
 import pytest
 
-from teachpath.commands.serving import free_port, listen, short_pauses
+from teachpath.commands.serving import listen, short_pauses
 from teachpath.errors import Unreachable
+from tests.ports import free_port
 
 
 def test_answers_on_a_kept_connection_do_not_wait_for_acknowledgements() -> None:
