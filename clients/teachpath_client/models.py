@@ -1556,6 +1556,8 @@ class Shape:
         orientation: to world from shape, unit quaternion w, x, y, z.
         file: OBJ or STL file of a mesh, beside the settings.
         vertices: of the mesh's convex hull, which takes its place: three a triangle, in the file's units.
+        mass: of the carried object [kg]; None: that of its volume at 300 kg/m^3, as a light wooden block has.
+            Obstacles and zones have none.
     """
 
     name: str
@@ -1566,6 +1568,7 @@ class Shape:
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     file: str = ""
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
+    mass: float | None = None
 
 
 @dataclass(frozen=True)

@@ -28,11 +28,12 @@ MORE = {
     "scenes": """\
 # Positions are of centres [m], sizes of a box x, y, z, of a cylinder radius, height, of a sphere its radius; a shape
 # is turned by its `orientation` (quaternion w, x, y, z). A `mesh` has a `file` beside this one (.obj, .stl), and as
-# size the factor from its units to metres; its convex hull takes its place.
+# size the factor from its units to metres; its convex hull takes its place. The object may have a `mass`
+# [kg]; left out, it is that of its volume at 300 kg/m^3.
 # `floor`: its height. Arm, gripper and carried object stay above it, inside every box of [[scenes.keep_in]] and out of
 # every shape of [[scenes.keep_out]]""",
 }
-RARE = ("orientation", "file", "vertices")  # of a shape, not shown
+RARE = ("orientation", "file", "vertices", "mass")  # of a shape, not shown
 # A setting without a default shows one that it could have.
 EXAMPLES = {
     "motion.arm": "light",

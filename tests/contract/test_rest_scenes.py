@@ -32,12 +32,15 @@ def test_a_scene_is_made_changed_copied_removed_and_every_version_read_back(desk
     made = desk.put(address, {"obstacles": [BOX], "base": newest(desk, name), "author": "Ada", "note": "first"}).json()
     assert (made["author"], made["note"], made["removed"]) == ("Ada", "first", False)
     mesh = BOX | {"name": "cube", "kind": "mesh", "size": [0.001], "vertices": CUBE, "file": "cube.stl"}
-    changed = desk.put(address, {"obstacles": [BOX, mesh], "floor": -0.1, "base": made["number"]}).json()
+    can = BOX | {"name": "can", "mass": 0.35}
+    more = {"obstacles": [BOX, mesh], "carried": can, "floor": -0.1, "base": made["number"]}
+    changed = desk.put(address, more).json()
     assert changed["number"] == made["number"] + 1
     saved = desk.get(address).json()
     assert saved["version"] == changed
     assert desk.put(address, {k: v for k, v in saved["scene"].items() if k != "name"}).json() == changed
     assert len(saved["scene"]["obstacles"][1]["vertices"]) == 36
+    assert (saved["scene"]["carried"]["mass"], saved["scene"]["obstacles"][0]["mass"]) == (0.35, None)
     first = desk.get(f"{address}/versions/{made['number']}").json()
     assert [shape["name"] for shape in first["scene"]["obstacles"]] == ["case"]
     assert desk.get(f"{address}/versions").json()[:2] == [changed, made]
@@ -80,6 +83,9 @@ def test_a_copy_is_another_scene(desk: Desk, name: str) -> None:
         ({"obstacles": [BOX | {"orientation": [0, 0, 0, 0]}]}, "no value of obstacles.0.orientation"),
         ({"obstacles": [BOX | {"color": -1}]}, "body.obstacles.0.color"),
         ({"obstacles": [BOX, BOX]}, "there are two bodies case"),
+        ({"obstacles": [BOX | {"mass": 1.0}]}, "case in scene bench has a mass; only the carried object has one"),
+        ({"carried": BOX | {"mass": 0.0}}, "body.carried.mass"),
+        ({"carried": BOX | {"mass": 101.0}}, "body.carried.mass"),
         ({"obstacles": [BOX], "carried": BOX}, "there are two bodies case"),
         ({"carried": BOX | {"name": ""}}, "cannot name a body"),
         ({"keep_in": [BOX | {"kind": "sphere", "size": [1]}]}, "keep-in zone case in scene bench is a sphere"),

@@ -195,7 +195,7 @@ class ScenePanel {
     block(redo, draft?.redoLabel ? "" : "No step was undone.", `Redo ${draft?.redoLabel}`);
     block(revert, draft?.isEdited ? "" : UNCHANGED);
     this.list.show(draft?.scene ?? null, this.#chosen);
-    this.fields.show(shape, this.#hasColor);
+    this.fields.show(shape, this.#chosen?.part ?? null);
     this.saving.show(draft, missingSentence(this.context.store.state.identity, ["teach"]));
     patchChildren(this.versions, sceneVersions(this.#versions, draft?.base ?? 0));
     if (!this.#isShown) return;
@@ -207,11 +207,7 @@ class ScenePanel {
   #preview(shape) {
     if (!this.#draft || !this.#chosen) return;
     this.context.sceneLayers.preview(withShape(this.#draft.scene, this.#chosen, shape), shape);
-    this.fields.show(shape, this.#hasColor);
-  }
-
-  get #hasColor() {
-    return this.#chosen?.part === "obstacles" || this.#chosen?.part === "carried";
+    this.fields.show(shape, this.#chosen?.part ?? null);
   }
 }
 

@@ -155,6 +155,7 @@ export function newShape(scene, part, kind) {
     orientation,
     file: "",
     vertices: [],
+    mass: null,
   };
 }
 

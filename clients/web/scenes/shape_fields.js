@@ -17,13 +17,15 @@ const MAX_LENGTH = 10_000; // [mm] the service accepts no more
 const NOTHING = "Choose a shape in the list, or add one: its numbers stand here, and arrows in the view move it.";
 
 /**
+ * @typedef {import("./scene_draft.js").Part} Part
  * @typedef {object} NumberField
  * @property {HTMLInputElement} input
  * @property {HTMLLabelElement} label
  * @property {Text} caption
- * @property {(shape: Shape) => string} name of the number; "": a shape of this kind has no such one
- * @property {(shape: Shape) => number} read
+ * @property {(shape: Shape, part: Part | null) => string} name of the number; "": a shape of this kind has no such one
+ * @property {(shape: Shape) => number | null} read null: the shape does not say it, and need not
  * @property {(shape: Shape, value: number) => Shape} write
+ * @property {(shape: Shape) => Shape} [clear] the shape without the number, which may be left empty
  */
 
 export class ShapeFields {
@@ -35,9 +37,11 @@ export class ShapeFields {
     this.editor = editor;
     /** @type {Shape | null} */
     this.shape = null;
+    /** @type {Part | null} */
+    this.part = null;
     this.name = element("input", { type: "text", id: "shape-name", autocomplete: "off" });
     this.color = element("input", { type: "color", id: "shape-color" });
-    this.numbers = [...sizeFields(), ...positionFields(), ...turnFields()];
+    this.numbers = [...sizeFields(), ...positionFields(), ...turnFields(), massField()];
     this.place = place;
     this.nothing = hint(NOTHING);
     this.parts = element(
@@ -57,7 +61,7 @@ export class ShapeFields {
       if (!(target instanceof HTMLInputElement) || !this.shape) return;
       delete target.dataset.typed;
       this.#enter(target, this.shape);
-      this.show(this.shape, !this.color.hidden); // what was refused is as it was
+      this.show(this.shape, this.part); // what was refused is as it was
     });
   }
 
@@ -65,22 +69,24 @@ export class ShapeFields {
     return [this.name, this.color, ...this.numbers.map(({ input }) => input)];
   }
 
-  /** @param {Shape | null} shape that is chosen @param {boolean} hasColor of its own: zones have that of their rule */
-  show(shape, hasColor) {
+  /** @param {Shape | null} shape that is chosen @param {Part | null} part of the scene to which it belongs */
+  show(shape, part) {
     const isOther = shape?.name !== this.shape?.name;
     this.shape = shape;
+    this.part = part;
     this.nothing.hidden = shape !== null;
     this.parts.hidden = shape === null;
-    this.color.hidden = !hasColor;
+    this.color.hidden = part !== "obstacles" && part !== "carried"; // zones have that of their rule
     if (!shape) return;
     if (isOther) for (const input of this.inputs) delete input.dataset.typed;
     writeInput(this.name, shape.name);
     writeInput(this.color, `#${shape.color.toString(16).padStart(6, "0")}`);
     for (const { input, label, caption, name, read } of this.numbers) {
-      const text = name(shape);
+      const text = name(shape, part);
       label.hidden = text === "";
       if (caption.data !== text) caption.data = text;
-      writeInput(input, text && String(Number(read(shape).toFixed(4))));
+      const value = read(shape);
+      writeInput(input, text && value !== null ? String(Number(value.toFixed(4))) : "");
     }
   }
 
@@ -93,11 +99,14 @@ export class ShapeFields {
     const field = this.numbers.find((one) => one.input === input);
     if (!field) return;
     const { value, min, max } = input;
+    const name = field.name(shape, this.part);
+    if (value === "" && field.clear && !input.validity.badInput)
+      return editor.change(field.clear(shape), `${name} of ${shape.name}`);
     if (value === "" || !input.checkValidity()) {
       const rule = `must be a number from ${min} to ${max}`;
-      return editor.refuse(`${capitalize(field.name(shape))} ${value || "is empty; it"} ${rule}.`);
+      return editor.refuse(`${capitalize(name)} ${value || "is empty; it"} ${rule}.`);
     }
-    editor.change(field.write(shape, Number(value)), `${field.name(shape)} of ${shape.name}`);
+    editor.change(field.write(shape, Number(value)), `${name} of ${shape.name}`);
   }
 
   /** @param {Shape} shape @param {string} wanted */
@@ -118,8 +127,8 @@ function writeInput(input, value) {
 
 /**
  * @param {string} id
- * @param {{min: number, max: number}} limits
- * @param {Pick<NumberField, "name" | "read" | "write">} access
+ * @param {{min: number, max: number, placeholder?: string}} limits
+ * @param {Omit<NumberField, "input" | "label" | "caption">} access
  * @returns {NumberField}
  */
 function numberField(id, limits, access) {
@@ -168,6 +177,19 @@ const turnFields = () =>
         write: (shape, value) => ({ ...shape, orientation: orientationOf(turnsOf(shape.orientation).with(k, value)) }),
       },
     ),
+  );
+
+/** The object's mass; left empty, it is that of its volume at 300 kg/m³. */
+const massField = () =>
+  numberField(
+    "mass",
+    { min: 0.0001, max: 100, placeholder: "by volume" },
+    {
+      name: (_, part) => (part === "carried" ? "mass (kg)" : ""),
+      read: ({ mass }) => mass ?? null,
+      write: (shape, value) => ({ ...shape, mass: value }),
+      clear: (shape) => ({ ...shape, mass: null }),
+    },
   );
 
 /** @param {number[]} values @returns {[number, number, number]} */

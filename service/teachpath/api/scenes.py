@@ -16,6 +16,7 @@ from teachpath.api.strict_requests import Body
 from teachpath.api.versions import LINE_PATTERN
 from teachpath.editing import MAX_COORDINATE
 from teachpath.errors import UnusableInput
+from teachpath.motion.collision.scene_checks import MAX_MASS, MIN_MASS
 from teachpath.records import SavedScene, Scene, SceneVersion, Shape
 from teachpath.records.poses import unit_quaternion
 from teachpath_proto.keys import is_name, name_refusal
@@ -43,6 +44,12 @@ class ShapeBody(Body):
     file: str = Field("", max_length=255, description="from which a mesh was read; only a name")
     vertices: list[Point] = Field(
         [], max_length=MAX_VERTICES, description="of a mesh, in its own units; their convex hull takes its place"
+    )
+    mass: float | None = Field(
+        None,
+        ge=MIN_MASS,
+        le=MAX_MASS,
+        description="of the carried object [kg]; null: that of its volume at 300 kg/m^3; others have none",
     )
 
     def shape(self, place: str) -> Shape:

@@ -24,6 +24,8 @@ class Shape:
         orientation: to world from shape, unit quaternion w, x, y, z.
         file: OBJ or STL file of a mesh, beside the settings.
         vertices: of the mesh's convex hull, which takes its place: three a triangle, in the file's units.
+        mass: of the carried object [kg]; None: that of its volume at 300 kg/m^3, as a light wooden block has. Obstacles
+            and zones have none.
     """
 
     name: str
@@ -34,6 +36,7 @@ class Shape:
     orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)
     file: str = ""
     vertices: tuple[Vector, ...] = ()
+    mass: float | None = field(default=None, metadata=LATER)
 
 
 @dataclass(frozen=True, slots=True)

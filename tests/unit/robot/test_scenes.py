@@ -171,6 +171,7 @@ def test_a_mesh_becomes_its_hull_once(scenes: Scenes) -> None:
         (replace(BALL, size=(0.1, 0.1)), r"has size \(0.1, 0.1\); a sphere has 1 lengths over 0"),
         (replace(BALL, orientation=(1.0, 1.0, 0.0, 0.0)), "has an orientation of length 1.41421"),
         (replace(BALL, vertices=((0.0, 0.0, 0.0),)), "a mesh, and only a mesh, has a file"),
+        (replace(BALL, mass=0.2), "ball in scene s has a mass; only the carried object has one"),
         (replace(BALL, kind="mesh"), "a mesh, and only a mesh, has a file"),
         (replace(BALL, kind="mesh", vertices=((0.0, 0.0, 0.0),) * 3), "mesh ball has 3 corners; a body needs 4"),
         (replace(BALL, kind="mesh", vertices=((0.0, 0.0, 0.0),) * 5), "mesh ball is flat"),

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from math import pi
 from typing import Final
 
 import mujoco
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from teachpath.motion.arm.kinematics import jacobian, link_frames, tool_pose
-from teachpath.motion.arm.mjcf import OBJECT_DENSITY, write_mjcf
+from teachpath.motion.arm.mjcf import write_mjcf
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.object_mass import object_mass
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.arm.torque_variation import MovingMass, TorqueVariation
 from teachpath.records import Scene, Shape
@@ -21,7 +20,11 @@ COULOMB_FADE_SPEED: Final = 0.02  # rad/s, joint speed below which Coulomb frict
 
 
 class Dynamics:
-    """The arm without surroundings; the carried object is a point mass at the grasp point."""
+    """The arm without surroundings; the carried object is a point mass at the grasp point.
+
+    Attributes:
+        carried_mass: of the object [kg]; 0: it carries none.
+    """
 
     def __init__(self, arm: Arm, carried: Shape | None = None) -> None:
         self._arm = arm
@@ -35,7 +38,7 @@ class Dynamics:
         else:
             self._coulomb = np.array([joint.friction for joint in arm.model.joints])
             self._viscous = np.array([joint.damping for joint in arm.model.joints])
-        self._mass = 0.0 if carried is None else OBJECT_DENSITY * _volume(carried)
+        self.carried_mass = 0.0 if carried is None else object_mass(carried)
         self._variation = TorqueVariation(self._moving_masses(), arm)
 
     def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
@@ -102,9 +105,9 @@ class Dynamics:
             if link:
                 radius = float(np.linalg.norm(data.xipos[body] - origins[link]))
                 found.append(MovingMass(link, radius, model.body_mass[body], model.body_inertia[body].max()))
-        if self._mass:
+        if self.carried_mass:
             radius = float(np.linalg.norm(self._arm.tool_matrix[:3, 3]))
-            found.append(MovingMass(len(self._arm.limits.lower), radius, self._mass, 0.0))
+            found.append(MovingMass(len(self._arm.limits.lower), radius, self.carried_mass, 0.0))
         return found
 
     def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
@@ -122,11 +125,11 @@ class Dynamics:
             coriolis[row] = data.qfrc_bias[:6] - gravity[row]
             mujoco.mj_fullM(model, data, whole)
             inertia[row] = whole[:6, :6]
-        if self._mass:
+        if self.carried_mass:
             translation, turning = jacobian(q, self._arm)[:, :3], _centripetal(q, velocity, self._arm)
-            inertia += self._mass * np.einsum("nki,nkj->nij", translation, translation)
-            gravity -= self._mass * translation.transpose(0, 2, 1) @ GRAVITY
-            coriolis += self._mass * np.einsum("nki,nk->ni", translation, turning)
+            inertia += self.carried_mass * np.einsum("nki,nkj->nij", translation, translation)
+            gravity -= self.carried_mass * translation.transpose(0, 2, 1) @ GRAVITY
+            coriolis += self.carried_mass * np.einsum("nki,nk->ni", translation, turning)
         return inertia, gravity, coriolis
 
 
@@ -141,11 +144,3 @@ def _centripetal(q: Array, velocity: Array, arm: Arm, step: float = 1e-4) -> Arr
     """Return the grasp point's acceleration (n, 3) at constant joint velocities, from differences over `step` [s]."""
     before, now, after = (tool_pose(q + k * step * velocity, arm)[:, :3, 3] for k in (-1, 0, 1))
     return np.asarray((before - 2 * now + after) / step**2, dtype=np.float64)
-
-
-def _volume(shape: Shape) -> float:
-    if shape.kind == "mesh":
-        return float(ConvexHull(shape.size[0] * np.array(shape.vertices)).volume)
-    if shape.kind == "sphere":
-        return 4 / 3 * pi * shape.size[0] ** 3
-    return float(np.prod(shape.size)) if shape.kind == "box" else pi * shape.size[0] ** 2 * shape.size[1]

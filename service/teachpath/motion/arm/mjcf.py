@@ -12,13 +12,13 @@ from teachpath.motion.arm.geometry import LinkSolid, collision_solids, gripper_s
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.mjcf_shapes import color_text, mesh_asset, numbers, shape_attributes
 from teachpath.motion.arm.model import Arm, Payload
+from teachpath.motion.arm.object_mass import OBJECT_DENSITY, object_mass
 from teachpath.motion.arm.puma560 import GRIPPER_COM, GRIPPER_INERTIA, GRIPPER_MASS, Array, Link
 from teachpath.motion.arm.serial_mjcf import serial_bodies, serial_meshes, serial_motors
 from teachpath.records import Scene, Shape
 
 CARRIED_BODY: Final = "carried"  # body and geom of the carried object
 GRASP_WELD: Final = "grasp"  # the weld that holds it: set its relative pose, then eq_active
-OBJECT_DENSITY: Final = 300.0  # kg/m^3, of the carried object: a light wooden block
 
 # The arm has contacts with obstacles, but not with itself or its object: the certificate keeps it clear of itself.
 _OBSTACLE_CONTACTS: Final = 'contype="1" conaffinity="1"'
@@ -133,7 +133,7 @@ def _mount(arm: Arm) -> str:
 
 
 def _payload(payload: Payload) -> list[str]:
-    """Return the payload as a ball of the carried object's density, without any solid; nothing where it has no mass."""
+    """Return the payload as a ball of wood, without any solid; nothing where it has no mass."""
     if payload.mass == 0.0:
         return []
     radius = (3.0 * payload.mass / (4.0 * pi * OBJECT_DENSITY)) ** (1 / 3)
@@ -182,7 +182,7 @@ def _carried(shape: Shape) -> str:
     return (
         f'<body name="{CARRIED_BODY}" pos="{numbers(shape.position)}" quat="{numbers(shape.orientation)}">'
         f'<freejoint name="{CARRIED_BODY}"/><geom name="{CARRIED_BODY}" {shape_attributes(shape, CARRIED_BODY)} '
-        f'density="{OBJECT_DENSITY}" rgba="{color_text(shape.color)}" {_OBJECT_CONTACTS}/></body>'
+        f'mass="{object_mass(shape)!r}" rgba="{color_text(shape.color)}" {_OBJECT_CONTACTS}/></body>'
     )
 
 

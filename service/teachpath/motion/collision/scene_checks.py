@@ -10,6 +10,7 @@ from teachpath.records import Scene, Shape
 from teachpath_proto.keys import is_name, name_refusal
 
 SIZES: Final = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
+MIN_MASS, MAX_MASS = 1e-4, 100.0  # [kg] of the object
 
 
 def check_scene(scene: Scene) -> None:
@@ -25,6 +26,7 @@ def check_scene(scene: Scene) -> None:
             raise UnusableInput(f"there are two bodies {shape.name} in scene {scene.name}; rename one of them")
         known.add(shape.name)
         _check_shape(shape, scene.name)
+        _check_mass(shape, scene)
     for zone in scene.keep_in:
         if zone.kind != "box":
             raise UnusableInput(f"keep-in zone {zone.name} in scene {scene.name} is a {zone.kind}; use a box")
@@ -40,3 +42,17 @@ def _check_shape(shape: Shape, scene: str) -> None:
         raise UnusableInput(f"{who} has an orientation of length {norm:g}; a unit quaternion has 1")
     if (shape.kind == "mesh") != bool(shape.vertices):
         raise UnusableInput(f"{who} is a {shape.kind}; a mesh, and only a mesh, has a file")
+
+
+def _check_mass(shape: Shape, scene: Scene) -> None:
+    if shape.mass is None:
+        return
+    if shape is not scene.carried:
+        raise UnusableInput(
+            f"{shape.name} in scene {scene.name} has a mass; only the carried object has one, leave it out here"
+        )
+    if not MIN_MASS <= shape.mass <= MAX_MASS:
+        raise UnusableInput(
+            f"{shape.name} in scene {scene.name} has a mass of {shape.mass:g} kg; an object has {MIN_MASS:g} to "
+            f"{MAX_MASS:g} kg"
+        )

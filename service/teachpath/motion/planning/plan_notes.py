@@ -6,6 +6,7 @@ import numpy as np
 
 from teachpath.lengths import describe_length
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.object_mass import object_mass
 from teachpath.motion.arm.tool import describe_tool
 from teachpath.records import Array, Certificate, Plan, Signature
 
@@ -17,7 +18,7 @@ def plan_notes(plan: Plan, arm: Arm) -> tuple[str, ...]:
     return (
         f"Plan {plan.id}: path {plan.path}, version {plan.path_version}, {length} in {plan.duration:.3f} s.",
         "It is the motion along the learned path alone, from rest to rest, with the gripper closed"
-        + (f" on {carried.name}" if carried else "")
+        + (f" on {carried.name}, {object_mass(carried):.3g} kg" if carried else "")
         + "; the way to its start, grasp, release and the way home are not in it.",
         *arm_notes(arm),
         f"Limits of joints 1 to 6: {_listed(plan.limits[0])} rad/s; {_listed(plan.limits[1])} rad/s^2; "

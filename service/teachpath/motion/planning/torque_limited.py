@@ -76,7 +76,7 @@ def time_within_torques(
     move = tool_path.describe_control_point(worst.s)
     raise PathRefused(
         f"the motors would have to give {100 * worst.value:.0f} % of their torque at {worst.place}; carry less"
-        f"{_payload_hint(arm)}, or bring the path nearer to the robot there, by {move}"
+        f"{_load_hint(arm, dynamics)}, or bring the path nearer to the robot there, by {move}"
     )
 
 
@@ -102,13 +102,16 @@ def move_within_torques(
     left = dynamics.acceleration_share(line, np.tile(speed, (MOVE_SAMPLES, 1)), limits.acceleration)
     if left < MIN_ACCELERATION_SHARE:
         raise PathRefused(
-            f"{move_name}: the motors are too weak for what the arm carries; carry less{_payload_hint(arm)}"
+            f"{move_name}: the motors are too weak for what the arm carries; carry less{_load_hint(arm, dynamics)}"
         )
     limits = limits.scaled(1.0, min(1.0, ACCELERATION_SAFETY_SHARE * left), 1.0)
     return straight_move(start, goal, limits, arm=arm, margins=SYMMETRIC_MARGINS)
 
 
-def _payload_hint(arm: Arm) -> str:
+def _load_hint(arm: Arm, dynamics: Dynamics) -> str:
+    """Return the mass of the heavier of both, the payload and the object."""
+    if dynamics.carried_mass > arm.payload.mass:
+        return f" (the object has {dynamics.carried_mass:.3g} kg)"
     return f" (motion.payload_mass is {arm.payload.mass:g} kg)" if arm.payload.mass else ""
 
 
