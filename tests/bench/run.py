@@ -16,6 +16,7 @@ from tests.bench import (
     learning_scale,
     lists,
     long_takes,
+    model_arms,
     motion,
     page,
     plans,
@@ -60,6 +61,7 @@ def main() -> None:
         "Random paths, planned and judged by an independent checker",
         plans.measure(count=10 if quick else 100),
     )
+    print_report("Arms from models, planned", model_arms.measure(count=10 if quick else 50))
     print_report(
         "An executor that oversleeps or dies, setpoints that are lost, at random moments on random paths",
         lateness.measure(paths=2 if quick else 10, moments=2 if quick else 10),

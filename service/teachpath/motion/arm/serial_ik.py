@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from teachpath.motion.arm.newton import approach_poses
 from teachpath.motion.arm.poses import pose_matrix
-from teachpath.motion.arm.serial_kinematics import serial_jacobian, serial_link_frames
+from teachpath.motion.arm.serial_kinematics import link_terms, serial_link_frames
 from teachpath.records import Array, SerialArm
 
 CLOSED: Final = 1e-9  # m and rad, within which a solution meets its pose
+RESIDUAL: Final = 1e-12  # m and rad, to which it is refined; rounding leaves some 1e-15
 SEEDS: Final = 200  # of one pose
 ITERATIONS: Final = 60  # from a random seed
-MAX_STEP: Final = 0.5  # rad, of a joint in one iteration
-DAMPING: Final = 0.05  # of the squared error, by which steps near singular configurations stay small
 SAME: Final = 1e-4  # rad, within which two solutions are one
 
 
@@ -36,22 +36,28 @@ def solve_near(poses: Array, seeds: Array, arm: SerialArm, iterations: int = ITE
     Returns:
         (n, joints) configurations, and (n,) how far each leaves the tool from its pose: the larger of [m] and [rad].
     """
-    q = seeds.copy()
-    offs = np.full(len(q), np.inf)
-    best = q.copy()
-    active = np.arange(len(q))
-    for _ in range(iterations + 1):
-        error = pose_errors(poses[active], q[active], arm)
-        off = np.maximum(np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1))
-        better = off < offs[active]
-        best[active[better]], offs[active[better]] = q[active[better]], off[better]
-        # Rounding leaves some 1e-15; a solution is refined beyond what it has to keep.
-        going = off > 1e-3 * CLOSED
-        active, error = active[going], error[going]
-        if not len(active):
-            break
-        q[active] += _steps(error, serial_jacobian(q[active], arm))
-    return best, offs
+    q = approach_poses(poses, seeds, *_geometry(arm), iterations, RESIDUAL)
+    error = pose_errors(poses, q, arm)
+    return q, np.maximum(np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1))
+
+
+def follow_poses(poses: Array, first: Array, arm: SerialArm, iterations: int = ITERATIONS) -> Array:
+    """Lead the tool from pose to pose, each time from where it came before; whether it meets them is not checked.
+
+    Args:
+        poses: (n, m, 4, 4) to world from the tool, m one after another.
+        first: (n, joints) configurations at the first ones [rad].
+        arm: whose tool it is.
+        iterations: at most, for each pose.
+
+    Returns:
+        (n, m, joints) configurations.
+    """
+    geometry, rows = _geometry(arm), [first]
+    for number in range(1, poses.shape[1]):
+        at = np.ascontiguousarray(poses[:, number])
+        rows.append(approach_poses(at, rows[-1], *geometry, iterations, RESIDUAL))
+    return np.stack(rows, axis=1)
 
 
 def pose_errors(poses: Array, q: Array, arm: SerialArm) -> Array:
@@ -89,13 +95,12 @@ def limits_of(arm: SerialArm) -> tuple[Array, Array]:
     )
 
 
-def _steps(error: Array, jacobian: Array) -> Array:
-    """Return steps (n, joints): damped least squares (Siciliano et al., Robotics, Springer 2009, eq. 3.59)."""
-    transposed = np.swapaxes(jacobian, 1, 2)
-    damping = DAMPING * np.sum(error**2, axis=1)[:, None, None] * np.eye(6) + 1e-15 * np.eye(6)
-    steps = (transposed @ np.linalg.solve(jacobian @ transposed + damping, error[:, :, None]))[:, :, 0]
-    largest = np.abs(steps).max(axis=1, keepdims=True)
-    return np.asarray(steps * np.minimum(1.0, MAX_STEP / np.maximum(largest, 1e-12)))
+def _geometry(arm: SerialArm) -> tuple[Array, Array, Array, Array]:
+    """Return turns, axes, anchors and tool of an arm, as `approach_poses` takes them."""
+    turns = np.array([link_terms(link) for link in arm.links])
+    turns[0] = pose_matrix(arm.base) @ turns[0]
+    axes, anchors = (np.array([getattr(joint, name) for joint in arm.joints]) for name in ("axis", "anchor"))
+    return turns, axes, anchors, pose_matrix(arm.tool).copy()
 
 
 def _distinct(q: Array) -> Array:

@@ -7,17 +7,19 @@ from functools import cache
 import numpy as np
 
 from teachpath.motion.arm.poses import pose_matrix
-from teachpath.records import Array, RevoluteJoint, SerialArm, Vector
+from teachpath.records import Array, Pose, SerialArm, SerialLink, Vector
 
 
 def serial_link_frames(q: Array, arm: SerialArm) -> Array:
     """Return the poses (..., joints, 4, 4) to world from the links at configurations (..., joints) [rad]."""
-    frame = np.broadcast_to(pose_matrix(arm.base), (*np.shape(q)[:-1], 4, 4))
-    frames = []
+    q = np.asarray(q, dtype=np.float64)
+    sine, cosine = np.sin(q)[..., None, None], np.cos(q)[..., None, None]
+    frames, frame = np.empty((*q.shape, 4, 4)), pose_matrix(arm.base)
     for number, link in enumerate(arm.links):
-        frame = frame @ pose_matrix(link.pose) @ _turned(q[..., number], link.joint)
-        frames.append(frame)
-    return np.stack(frames, axis=-3)
+        constant, by_sine, by_cosine = link_terms(link)
+        turned = constant + sine[..., number, :, :] * by_sine + cosine[..., number, :, :] * by_cosine
+        frame = frames[..., number, :, :] = frame @ turned
+    return frames
 
 
 def serial_tool_pose(q: Array, arm: SerialArm) -> Array:
@@ -66,15 +68,17 @@ def lever_arms(radii: Array, arm: SerialArm) -> Array:
     return arms
 
 
-def _turned(angle: Array, joint: RevoluteJoint) -> Array:
-    """Return the motions (..., 4, 4) of a link by angles (...,) about its joint's axis (Rodrigues' formula)."""
-    constant, by_sine, by_cosine = _turn_terms(joint.axis, joint.anchor)
-    return np.asarray(constant + np.sin(angle)[..., None, None] * by_sine + np.cos(angle)[..., None, None] * by_cosine)
+def link_terms(link: SerialLink) -> Array:
+    """Return what a link's motion to the one before is made of (Rodrigues' formula).
+
+    Returns:
+        (3, 4, 4) a constant, factor of the angle's sine, factor of its cosine; read-only.
+    """
+    return _link_terms(link.pose, link.joint.axis, link.joint.anchor)
 
 
 @cache
-def _turn_terms(axis: Vector, anchor: Vector) -> tuple[Array, Array, Array]:
-    """Return what turns about an axis are made of, (4, 4) each: a constant, factors of the angle's sine and cosine."""
+def _link_terms(pose: Pose, axis: Vector, anchor: Vector) -> Array:
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     constant, by_sine, by_cosine = np.eye(4), np.zeros((4, 4)), np.zeros((4, 4))
@@ -83,7 +87,9 @@ def _turn_terms(axis: Vector, anchor: Vector) -> tuple[Array, Array, Array]:
     for term in (constant, by_sine, by_cosine):
         term[:3, 3] = -term[:3, :3] @ anchor
     constant[:3, 3] += anchor
-    return constant, by_sine, by_cosine
+    terms = pose_matrix(pose) @ np.stack([constant, by_sine, by_cosine])
+    terms.flags.writeable = False
+    return np.asarray(terms)
 
 
 def _norm(vector: Vector) -> float:

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.serial_ik import CLOSED, SEEDS, all_solutions, limits_of, solve_near
+from teachpath.motion.arm.serial_ik import CLOSED, SEEDS, all_solutions, follow_poses, limits_of, solve_near
 from teachpath.records import Array, SerialArm
 
 STRIDE: Final = 5  # nodes from one that is solved from the one before to the next; those between begin in between
@@ -42,12 +42,10 @@ def track_solutions(ways: Sequence[Array], arm: SerialArm) -> list[TrackedSoluti
     of = np.repeat(np.arange(len(ways)), [len(start) for start in starts])
     poses, count = np.stack(ways)[of], len(ways[0])  # (k, n, 4, 4)
     coarse = np.unique(np.append(np.arange(0, count, STRIDE), count - 1))
-    rows = [np.concatenate(starts)]
-    for node in coarse[1:]:
-        rows.append(solve_near(poses[:, node], rows[-1], arm, FOLLOWING)[0])
+    rows = follow_poses(poses[:, coarse], np.concatenate(starts), arm, FOLLOWING)
     nodes = np.arange(count)
-    seeds = [[np.interp(nodes, coarse, joint) for joint in found.T] for found in np.stack(rows, axis=1)]  # (k, dof, n)
-    flat = np.swapaxes(np.array(seeds), 1, 2).reshape(-1, rows[0].shape[1])
+    seeds = [[np.interp(nodes, coarse, joint) for joint in found.T] for found in rows]  # (k, dof, n)
+    flat = np.swapaxes(np.array(seeds), 1, 2).reshape(-1, rows.shape[2])
     joints, off = solve_near(poses.reshape(-1, 4, 4), flat, arm, FOLLOWING)
     excess = np.where(off <= CLOSED, 0.0, off).reshape(len(of), count)
     each = zip(of, joints.reshape(len(of), count, -1), excess, strict=True)

@@ -37,3 +37,13 @@ def test_what_is_out_of_reach_is_said_to_be_missed() -> None:
     assert all_solutions(pose, arm).shape == (0, 6)
     _, off = solve_near(pose[None], np.full((1, 6), 0.3), arm)
     assert off[0] > 1.5
+
+
+def test_a_half_turn_away_the_axis_is_found_all_the_same() -> None:
+    arm = read_arm("six-axis")
+    for q in np.random.default_rng(9).uniform(-1.5, 1.5, (4, 6)):
+        for joint in (3, 5):
+            turned = q + np.pi * (np.arange(6) == joint)  # by hardly a rounding more or less than a half turn
+            found, off = solve_near(serial_tool_pose(turned, arm)[None], q[None], arm)
+            assert off[0] <= CLOSED
+            assert np.abs(pose_errors(serial_tool_pose(found, arm), turned[None], arm)).max() <= 1e-8

@@ -1,0 +1,65 @@
+"""Planning for arms that are read from a model: random paths, planned for the example of six axes.
+
+`python -m tests.bench.model_arms` prints the figures.
+"""
+
+import time
+
+import numpy as np
+
+from teachpath.errors import PathRefused
+from teachpath.io.arm_models.arm_reader import read_arm
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.planning.plan import plan
+from teachpath.motion.planning.sampled_plan import sample_plan
+from teachpath.motion.settings import MotionSettings
+from teachpath.records import Fit, LearnedPath, Plan, SerialArm
+from tests.bench.report import Figure, against, print_report
+from tests.plan_checker.random_cases import random_case
+
+HEIGHT = 0.5  # [m] of the table, on which the arm stands
+RATE = 250.0  # [Hz]
+ASKED = 0.3  # [s] of a processor, of planning a metre
+
+
+def measure(*, count: int) -> list[Figure]:
+    """Return the figures over so many random paths in random scenes, after one that does not count."""
+    model = read_arm("six-axis", base=((0.0, 0.0, HEIGHT), (1.0, 0.0, 0.0, 0.0)), gripper_length=0.13)
+    arm = Arm.of_model(model, MotionSettings())
+    _planned(0, arm)
+    found = [_planned(seed, arm) for seed in range(count)]
+    plans = [(made, seconds) for made, seconds in found if made is not None]
+    uses = np.max([_largest_use(made, arm, model) for made, _ in plans])
+    refused = tuple(took for made, took in found if made is None)
+    return [
+        Figure(f"plans accepted of {count} random paths", (float(len(plans)),), "plans"),
+        against("largest use of a joint's speed, acceleration or jerk", [float(uses)], "", name="limit", value=1.0),
+        against(
+            "planning a metre, CPU", [took / made.lengths[-1] for made, took in plans], "s", name="asked", value=ASKED
+        ),
+        *([Figure("finding that there is no plan, CPU", refused, "s")] if refused else []),
+    ]
+
+
+def _planned(seed: int, arm: Arm) -> tuple[Plan | None, float]:
+    """Plan a random path; return the plan, None where it is refused, and the time of a processor that it took [s]."""
+    curve, scene = random_case(seed)
+    path = LearnedPath(f"random-{seed}", "run", 1, 1, curve, Fit(0.0, 0.0, 0.0, 0.0))
+    began = time.process_time()
+    try:
+        made = plan(path, scene, arm=arm)
+    except PathRefused:
+        return None, time.process_time() - began
+    return made, time.process_time() - began
+
+
+def _largest_use(made: Plan, arm: Arm, model: SerialArm) -> float:
+    motion, worst = sample_plan(made, RATE, arm).positions, 0.0
+    for kind in ("speed", "acceleration", "jerk"):
+        motion = np.diff(motion, axis=0) * RATE
+        worst = max(worst, float(np.abs(motion / [getattr(joint, kind).value for joint in model.joints]).max()))
+    return worst
+
+
+if __name__ == "__main__":
+    print_report("Arms from models, planned", measure(count=20))
