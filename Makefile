@@ -53,7 +53,8 @@ $(SERVICE): pyproject.toml requirements/service.txt requirements/uv.txt
 	@$(call install,--no-deps --no-build-isolation -e .)
 	@touch $@
 
-$(READY): $(SERVICE) requirements/dev.txt
+$(READY): $(SERVICE) requirements/site.txt requirements/dev.txt
+	@$(call install,$(PINNED)/site.txt)
 	@$(call install,$(PINNED)/dev.txt)
 	@touch $@
 
@@ -123,12 +124,16 @@ docs: $(READY)
 # Versions stay where they are unless ARGS says otherwise: --upgrade, or --upgrade-package NAME.
 COMPILE = $(BIN)/uv pip compile -q --universal --python-version 3.11 --fork-strategy fewest --generate-hashes \
 	--no-header --no-annotate --no-emit-index-url $(ARGS)
+# What one of the files pins on every system stands in no other.
+left_out = $$(sed -n 's/^\([a-z0-9-]*\)==[^;]*$$/--no-emit-package \1/p' requirements/$(1).txt)
 pins: $(SERVICE)
 	@$(call install,$(PINNED)/uv.txt)
 	$(COMPILE) --group setup -o requirements/uv.txt
 	$(COMPILE) pyproject.toml --extra service --group build -o requirements/service.txt
-	$(COMPILE) pyproject.toml --extra dev -c requirements/service.txt -o requirements/dev.txt \
-		$$(sed -n 's/^\([a-z0-9-]*\)==[^;]*$$/--no-emit-package \1/p' requirements/service.txt)
+	$(COMPILE) pyproject.toml --extra postgres --extra s3 -c requirements/service.txt -o requirements/site.txt \
+		$(call left_out,service)
+	$(COMPILE) pyproject.toml --extra dev -c requirements/service.txt -c requirements/site.txt -o requirements/dev.txt \
+		$(call left_out,service) $(call left_out,site)
 
 sbom: $(READY)
 	@$(BIN)/python tools/bill_of_materials.py

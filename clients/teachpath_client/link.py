@@ -85,7 +85,10 @@ class Link:
                 return bytes(reply.ok.payload.to_bytes())
             if reply.err is not None:
                 raise ClientError(_reason(reply.err.payload.to_bytes()))
-        raise ClientError(f"the station did not answer {key} within {timeout:g} s")
+        raise ClientError(
+            f"the station did not answer {key} within {timeout:g} s; if it runs, does its setting bus.prefix stand at "
+            "the head of that key? It is named with --prefix"
+        )
 
 
 def _open_without_login(endpoint: str, timeout: float) -> zenoh.Session | None:

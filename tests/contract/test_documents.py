@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import tomllib
 from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 import typer.main
 
 from teachpath.__main__ import app
+from teachpath.config import Settings, load
 from teachpath_client.__main__ import parser_of_commands
 
 ROOT = Path(__file__).parents[2]
@@ -22,6 +24,7 @@ DOCUMENTS = sorted(
 PROGRAMS = ("teachpath", "teachpath-client")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 SHELL = re.compile(r"```sh\n(.*?)```", re.DOTALL)
+TOML = re.compile(r"```toml\n(.*?)```", re.DOTALL)
 INLINE = re.compile(r"`(teachpath [^`]+)`")
 
 
@@ -45,6 +48,18 @@ def commands(document: Path) -> Iterator[list[str]]:
                 if word.removeprefix(".venv/bin/") in PROGRAMS:
                     yield [word.removeprefix(".venv/bin/"), *words[place + 1 :]]
                     break
+
+
+def settings(document: Path) -> list[dict[str, Any]]:
+    """Settings of a station that a document shows, block by block."""
+    blocks = [tomllib.loads(block) for block in TOML.findall(document.read_text())]
+    return [block for block in blocks if block.keys() <= Settings.model_fields.keys()]
+
+
+@pytest.mark.parametrize("document", [d for d in DOCUMENTS if settings(d)], ids=name_of)
+def test_settings_in_the_documents_are_a_station_s(document: Path) -> None:
+    for block in settings(document):
+        load(document=block)
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)

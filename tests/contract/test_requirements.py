@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-FILES = {name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("service", "dev", "uv")}
+FILES = {name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("service", "site", "dev", "uv")}
 
 
 def pinned(text: str) -> list[str]:
@@ -37,9 +37,10 @@ def test_every_requirement_is_a_version_with_hashes_and_nothing_else(name: str) 
 
 def test_everything_that_is_asked_for_is_pinned() -> None:
     extras, groups = PYPROJECT["project"]["optional-dependencies"], PYPROJECT["dependency-groups"]
-    service, dev = set(pinned(FILES["service"])), set(pinned(FILES["dev"]))
+    service, site, dev = (set(pinned(FILES[name])) for name in ("service", "site", "dev"))
     assert wanted(PYPROJECT["project"]["dependencies"], extras["service"], groups["build"]) <= service
-    assert wanted(extras["dev"], extras["dask"], extras["lerobot"], extras["ros"]) <= service | dev
+    assert wanted(extras["postgres"], extras["s3"]) <= service | site
+    assert wanted(extras["dev"], extras["dask"], extras["lerobot"], extras["ros"]) <= service | site | dev
     assert wanted(groups["setup"]) == set(pinned(FILES["uv"]))
 
 
