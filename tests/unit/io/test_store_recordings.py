@@ -131,13 +131,31 @@ def test_a_damaged_recording_gives_no_wrong_sample(whole: Path, place: int, valu
             recordings.samples("lift/damaged.mcap")
 
 
+def begin_of(kind: Opcode, content: bytearray) -> int:
+    """Return where the first record of a kind begins, behind its opening."""
+    at = 8  # behind what every MCAP file begins with
+    while content[at] != kind:
+        at += OPENING.size + OPENING.unpack_from(content, at)[1]
+    return at + OPENING.size
+
+
+@pytest.mark.parametrize("size", [17, 2**32 - 16])
+def test_a_damaged_index_of_messages_is_told(whole: Path, size: int) -> None:
+    content = bytearray(whole.read_bytes())
+    at = begin_of(Opcode.MESSAGE_INDEX, content) + 2  # behind its channel
+    content[at : at + 4] = size.to_bytes(4, "little")
+    damaged = whole.with_name("index.mcap")
+    damaged.write_bytes(content)
+    _, samples, fault = salvage(damaged)
+    assert same(samples, SAMPLES[: len(samples)])
+    assert fault.startswith(f"an index of messages states {size} bytes")
+
+
 @pytest.mark.parametrize("length", [MAX_RECORD_SIZE + 1, 2**40, 2**63, 2**64 - 1])
 def test_a_damaged_length_within_a_chunk_takes_no_memory(whole: Path, length: int) -> None:
     content = bytearray(whole.read_bytes())
-    at = 8  # behind what every MCAP file begins with
-    while content[at] != Opcode.CHUNK:
-        at += OPENING.size + OPENING.unpack_from(content, at)[1]
-    at += OPENING.size + 28  # its times, the size that it expands to, and its check sum
+    at = begin_of(Opcode.CHUNK, content)
+    at += 28  # its times, the size that it expands to, and its check sum
     at += 4 + int.from_bytes(content[at : at + 4], "little")  # the name of its compression
     content[at : at + 8] = length.to_bytes(8, "little")
     damaged = whole.with_name("long.mcap")

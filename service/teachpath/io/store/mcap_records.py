@@ -12,7 +12,7 @@ import lz4.frame
 import zstandard
 from mcap.exceptions import EndOfFile
 from mcap.opcode import Opcode
-from mcap.records import Chunk, Header, McapRecord, Message
+from mcap.records import Chunk, Header, McapRecord, Message, MessageIndex
 from mcap.stream_reader import StreamReader
 
 from teachpath.errors import UnusableRecording
@@ -23,6 +23,9 @@ MAX_RECORDS_PER_SAMPLE: Final = 10  # a sample has some messages for viewers bes
 OPENING: Final = struct.Struct("<BQ")  # of a record: its kind, and the bytes that follow
 # Of the record of a message: its kind, the bytes that follow, channel, number, time of the log, time of publication.
 MESSAGE: Final = struct.Struct("<BQHIQQ")
+MESSAGE_KIND: Final = int(Opcode.MESSAGE)
+INDEX: Final = struct.Struct("<HI")  # of messages: channel, and the bytes of the entries that follow
+INDEX_ENTRY: Final = struct.Struct("<QQ")  # time of the log, and where in the chunk
 
 
 class BoundedStream:
@@ -44,10 +47,26 @@ class BoundedStream:
         return self._stream.read(length)
 
 
+class RecordReader(StreamReader):
+    """The library's reader; it reads an index of messages at once, where the library reads number after number."""
+
+    def _read_record(self, opcode: int, length: int) -> McapRecord | None:
+        if opcode != Opcode.MESSAGE_INDEX:
+            return super()._read_record(opcode, length)
+        content = self._stream.read(length)
+        if len(content) < length:
+            raise EndOfFile
+        channel, size = INDEX.unpack_from(content)
+        entries = content[INDEX.size : INDEX.size + size]
+        if len(entries) < size or size % INDEX_ENTRY.size:
+            raise UnusableRecording(f"an index of messages states {size} bytes and has {len(entries)}: it is damaged")
+        return MessageIndex(channel, list(INDEX_ENTRY.iter_unpack(entries)))
+
+
 def open_records(stream: BinaryIO, *, emit_chunks: bool = False) -> Iterator[McapRecord]:
     """Yield the records of a file, or its chunks as they are; no damage asks for more memory than records may have."""
     bounded = cast(BinaryIO, BoundedStream(stream))
-    reader = StreamReader(bounded, emit_chunks=emit_chunks, validate_crcs=True, record_size_limit=MAX_RECORD_SIZE)
+    reader = RecordReader(bounded, emit_chunks=emit_chunks, validate_crcs=True, record_size_limit=MAX_RECORD_SIZE)
     return iter(reader.records)
 
 
@@ -93,12 +112,13 @@ def _chunk_records(chunk: Chunk) -> Iterator[McapRecord]:
     begin = 0
     try:
         while begin < len(plain):
-            if plain[begin] == 0:
-                raise UnusableRecording(f"byte {begin} of a chunk begins no record")
-            if (message := _message_at(plain, begin)) is not None:
+            kind = plain[begin]
+            if kind == MESSAGE_KIND and (message := _message_at(plain, begin)) is not None:
                 yield message
                 begin += MESSAGE.size + len(message.data)
                 continue
+            if kind == 0:
+                raise UnusableRecording(f"byte {begin} of a chunk begins no record")
             stream.seek(begin)
             if not isinstance(record := next(records), Chunk):  # a chunk in a chunk is none
                 yield record
@@ -109,17 +129,18 @@ def _chunk_records(chunk: Chunk) -> Iterator[McapRecord]:
 
 
 def _message_at(plain: bytes, begin: int) -> Message | None:
-    """Return the message whose record begins there, or None where that is another record, or none that is whole.
+    """Return the message whose record begins there, or None where it is not whole.
 
     A recording has little else, and the library reads one in four times the time.
     """
-    if plain[begin] != Opcode.MESSAGE or begin + MESSAGE.size > len(plain):
+    data = begin + MESSAGE.size
+    if data > len(plain):
         return None
     _, length, channel, number, logged, published = MESSAGE.unpack_from(plain, begin)
     end = begin + OPENING.size + length
-    if not begin + MESSAGE.size <= end <= len(plain):
+    if not data <= end <= len(plain):
         return None
-    return Message(channel, logged, plain[begin + MESSAGE.size : end], published, number)
+    return Message(channel, logged, plain[data:end], published, number)
 
 
 def _decompressed(chunk: Chunk) -> bytes:

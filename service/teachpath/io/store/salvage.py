@@ -59,17 +59,19 @@ def salvage_columns(
     ours: set[int] = set()  # channels that hold samples
     try:
         for record in read_records(stream, limits):
-            if isinstance(record, Metadata) and record.name == HEADER:
-                header = documents.decode(RecordingHeader, record.metadata["header"].encode())
-            elif isinstance(record, Channel) and record.topic == TOPIC:
-                ours.add(record.id)
-            elif isinstance(record, Message) and record.channel_id in ours:
+            if isinstance(record, Message):  # first: nearly all are
+                if record.channel_id not in ours:
+                    continue
                 if limits is not None and len(payloads) == limits.max_samples:
                     raise UnusableRecording(
                         f"it has over {len(payloads)} samples, the limit (imports.max_samples); split the recording"
                     )
                 payloads.append(record.data)
                 receive_ns.append(record.log_time)
+            elif isinstance(record, Metadata) and record.name == HEADER:
+                header = documents.decode(RecordingHeader, record.metadata["header"].encode())
+            elif isinstance(record, Channel) and record.topic == TOPIC:
+                ours.add(record.id)
             elif isinstance(record, Statistics):
                 # A reader passes over a record of a kind that it does not know, so a damaged kind hides a whole chunk.
                 written = sum(record.channel_message_counts.get(channel, 0) for channel in ours)
