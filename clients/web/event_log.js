@@ -1,6 +1,4 @@
 // The log of what has happened since the page was opened, newest first, whoever did it.
-
-import { nameJoints } from "./arm/joint_names.js";
 import { element, hint } from "./elements.js";
 import { STATE_LABELS } from "./panels/arm_state.js";
 import { JOB_LABELS } from "./panels/jobs.js";
@@ -35,10 +33,7 @@ export function eventLog(place, button, store) {
     before = state;
     if (!texts.length) return;
     const at = new Date().toLocaleTimeString("en-GB");
-    entries = [...texts.reverse().map((text) => ({ at, text: nameJoints(text, state.robot) })), ...entries].slice(
-      0,
-      MAX_ENTRIES,
-    );
+    entries = [...texts.reverse().map((text) => ({ at, text })), ...entries].slice(0, MAX_ENTRIES);
     unseen = place.matches(":popover-open") ? 0 : Math.min(MAX_ENTRIES, unseen + texts.length);
     render();
   });

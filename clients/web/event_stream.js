@@ -96,12 +96,6 @@ export class EventStream {
     this.read("tasks", "executions", ...TASK_LISTS);
   }
 
-  /** Read how the arm is built; without an answer it stays as it was. */
-  async readRobot() {
-    const robot = await get("robot").catch(() => null);
-    if (robot) this.store.set({ robot });
-  }
-
   /**
    * Read lists anew, as `ListReader.read`.
    * @param {...ListName} names
@@ -184,7 +178,6 @@ export class EventStream {
   #handleEvent(event) {
     if (event.topic === "all") {
       if (event.reason === "connected") {
-        this.readRobot(); // another arm may stand there than before
         this.#topicStates = {}; // the states follow
         for (const topic of Object.keys(STATE_OF_TOPIC)) this.#publishTopic(topic);
       }

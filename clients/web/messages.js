@@ -9,10 +9,9 @@ export class Messages {
   #said = 0; // sentences so far
   #timer = 0;
 
-  /** @param {HTMLElement} place @param {(sentence: string) => string} reword how a sentence of the service is said here */
-  constructor(place, reword = (sentence) => sentence) {
+  /** @param {HTMLElement} place */
+  constructor(place) {
     this.place = place;
-    this.reword = reword;
   }
 
   /**
@@ -27,11 +26,7 @@ export class Messages {
     close.addEventListener("click", () => this.clear());
     // an error interrupts the screen reader, a note waits its turn
     this.place.setAttribute("role", kind === "error" ? "alert" : "status");
-    this.place.replaceChildren(
-      element("p", { class: kind }, this.reword(text)),
-      ...(action ? [this.#button(action)] : []),
-      close,
-    );
+    this.place.replaceChildren(element("p", { class: kind }, text), ...(action ? [this.#button(action)] : []), close);
     this.place.hidden = false;
     if (kind === "note" && !action) this.#timer = setTimeout(() => this.clear(), NOTE_DURATION);
   }

@@ -13,7 +13,6 @@
 // A panel reads context.store.state, changes it with context.store.set(), and speaks REST through api.js.
 import { administration } from "./administration.js";
 import { post } from "./api.js";
-import { nameJoints } from "./arm/joint_names.js";
 import { lease } from "./arm/lease.js";
 import { ArmStop } from "./arm/stop.js";
 import { closest, closestData, element } from "./elements.js";
@@ -49,7 +48,7 @@ const STOP_TIMEOUT = 3000; // [ms] of one try: the service says within 2 s that 
 const root = document.documentElement;
 const store = new Store();
 const eventStream = new EventStream(store);
-const messages = new Messages(byId("message"), (sentence) => nameJoints(sentence, store.state.robot));
+const messages = new Messages(byId("message"));
 const view = new View(byId("view"), () => {
   if (sceneLayers.isComplete) root.dataset.scene = "ready";
 });

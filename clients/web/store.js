@@ -5,7 +5,6 @@
 // runs         [summary of a run] of the task, newest first   jobs           [job] of the task, newest first
 // executions   [execution], newest first                      recordings     [report] of running recordings
 // trackers     [{name, announced}]                            guidance       {task: sentence}
-// robot        how the station's arm is built, or null
 // station      {version, notes, authority, documents} or null executor       status or null when it is silent
 // run          id of the chosen run, "" = the newest          selectedRun    the run that is shown, null = none
 // plan         certified plan of the selected path, or null    identity       who uses the page, and may do what
@@ -36,7 +35,6 @@ export const INITIAL_STATE = Object.freeze({
   recordings: [],
   trackers: [],
   guidance: {},
-  robot: null,
   station: null,
   executor: null,
   lease: null,

@@ -27,7 +27,6 @@ from teachpath.io.memory_bus import MemoryBus
 from teachpath.learning.clustering.cuts import dendrogram
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.preview import Preview
-from teachpath.motion.arm.description import describe_arm
 from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.model import Arm
@@ -70,8 +69,6 @@ class Server:
         self.preview.show_object(paper_scene().carried)
         self.preview.start()
         app = self.web_app(demonstrations)
-        robot = to_document(describe_arm(arm, name=ROBOT, home=tuple(home.tolist())))
-        app.add_api_route("/api/v1/robot", lambda: robot)
         config = uvicorn.Config(app, host="127.0.0.1", port=self.port, log_level="warning", ws="websockets-sansio")
         self._server = uvicorn.Server(config)
         self._thread = threading.Thread(target=self._server.run, daemon=True)

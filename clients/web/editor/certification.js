@@ -1,8 +1,8 @@
 // From a saved version to a certified plan, and on to where the arm is moved.
 import { get, post, resourcePath } from "../api.js";
-import { nameJoints } from "../arm/joint_names.js";
 import { block, closest, element, progressBar } from "../elements.js";
 import { icon } from "../icons.js";
+import { newestPlanning } from "../panels/path_summaries.js";
 import { patchChildren } from "../patch_children.js";
 import { formatLength, formatNumber } from "../texts.js";
 import { versionTitle } from "./versions.js";
@@ -11,9 +11,16 @@ export const UNSAVED = "Save the version first; only what is saved is certified.
 
 /** @typedef {Job & {path: string, version: import("./draft.js").BaseVersion, plan?: Plan}} Planning */
 
+/** Whether what is edited is a certified version, as it was saved. @param {Editor} editor */
+export function isCertified({ draft, context }) {
+  if (!draft || draft.edited) return false;
+  const version = { id: draft.path, version: draft.base.number };
+  return newestPlanning(version, context.store.state.jobs ?? [])?.state === "succeeded";
+}
+
 /** @param {HTMLElement} place @param {Editor} editor @param {HTMLElement} foot where its button goes @returns {EditorSection} */
 export function certificationSection(place, editor, foot) {
-  const certify = element("button", { type: "button", id: "edit-certify", class: "primary" });
+  const certify = element("button", { type: "button", id: "edit-certify" });
   const status = element("div", { id: "edit-certified", role: "status" });
   const why = element("p", { class: "note" }, UNSAVED);
   place.append(why, status);
@@ -35,7 +42,9 @@ export function certificationSection(place, editor, foot) {
     context.store.set({ path: job.path }); // its newest plan is this one
     context.open("run");
   });
+  const showPrimary = () => certify.classList.toggle("primary", !isCertified(editor)); // what is done is no next step
   context.store.subscribe((state, changed) => {
+    if (changed.has("jobs")) showPrimary();
     if (!changed.has("jobs") || !job || job.plan) return;
     const planning = job;
     const now = state.jobs?.find(({ id }) => id === planning.id);
@@ -48,11 +57,7 @@ export function certificationSection(place, editor, foot) {
       render();
     });
   });
-  const render = () =>
-    patchChildren(
-      status,
-      ...(job && job.path === editor.draft?.path ? content(job, editor.context.store.state.robot) : []),
-    );
+  const render = () => patchChildren(status, ...(job && job.path === editor.draft?.path ? content(job) : []));
 
   return {
     update({ draft, planning }, what) {
@@ -63,22 +68,17 @@ export function certificationSection(place, editor, foot) {
       if (!draft || what === "drag" || what === "feasibility") return;
       certify.replaceChildren(icon("certify"), `Certify version ${versionTitle(draft.base)}`);
       block(certify, draft.edited ? UNSAVED : "");
+      showPrimary();
       why.hidden = !draft.edited;
       render();
     },
   };
 }
 
-/** @param {Planning} planning @param {Robot | null} robot @returns {Child[]} */
-function content({ state, message, fraction, plan, version }, robot) {
+/** @param {Planning} planning @returns {Child[]} */
+function content({ state, message, fraction, plan, version }) {
   if (state === "failed" || state === "cancelled")
-    return [
-      element(
-        "p",
-        { class: "failed" },
-        `Version ${versionTitle(version)} is not certified: ${nameJoints(message, robot)}.`,
-      ),
-    ];
+    return [element("p", { class: "failed" }, `Version ${versionTitle(version)} is not certified: ${message}.`)];
   if (!plan) return [element("p", {}, message || "waiting to be planned …"), progressBar(fraction, "planning")];
   const { duration, certificate } = plan;
   const clearance =

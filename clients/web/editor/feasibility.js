@@ -1,5 +1,4 @@
 // Whether the arm can follow the draft: a sentence, the segment that fails, what to move, and the colors along the curve.
-import { nameJoints } from "../arm/joint_names.js";
 import { blocked, closest, element, svgElement } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { capitalize, formatLength, formatNumber } from "../texts.js";
@@ -44,9 +43,8 @@ export function feasibilitySection(place, editor) {
 }
 
 /** @param {Editor} editor @returns {Child[]} */
-function content({ draft, feasibility, context }) {
-  const { robot } = context.store.state;
-  if (feasibility?.error) return [element("p", { class: "failed" }, nameJoints(feasibility.error, robot))];
+function content({ draft, feasibility }) {
+  if (feasibility?.error) return [element("p", { class: "failed" }, feasibility.error)];
   if (!feasibility?.assessment) return [element("p", { class: "note" }, "The service is assessing the curve …")];
   const { failure, duration, sentence: outlook, lengths, clearance } = feasibility.assessment;
   if (!failure) {
@@ -62,7 +60,7 @@ function content({ draft, feasibility, context }) {
     element(
       "p",
       { class: "failed" },
-      `From ${formatNumber(interval[0], 3)} to ${formatNumber(interval[1], 3, "m")} the arm cannot follow: ${nameJoints(reason, robot)}.`,
+      `From ${formatNumber(interval[0], 3)} to ${formatNumber(interval[1], 3, "m")} the arm cannot follow: ${reason}.`,
     ),
     element("p", {}, `${capitalize(suggestion.sentence)}.`),
     size > 0 &&

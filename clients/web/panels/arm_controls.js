@@ -158,7 +158,7 @@ class ArmControls {
     const last = state.executor?.execution ? state.executor : state.executions?.[0]?.status;
     const isAway = state.connection === "lost";
     const status = active ?? last;
-    patchChildren(parts.state, armState(status, isAway, state.robot));
+    patchChildren(parts.state, armState(status, isAway));
     patchChildren(parts.figures, !isAway && status && armFigures(status, active !== null));
     const isOthers = Boolean(state.lease?.holder) && !lease.held;
     const unasked = (!isAway && state.executor?.unasked_motion) || "";

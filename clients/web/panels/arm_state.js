@@ -1,5 +1,4 @@
 // How an execution stands, in words and figures.
-import { nameJoints } from "../arm/joint_names.js";
 import { definitionList, element, progressBar } from "../elements.js";
 import { capitalize, formatNumber, formatPercent } from "../texts.js";
 
@@ -21,13 +20,12 @@ export const isTeleoperated = ({ activity }) => activity.startsWith("mirroring")
 /**
  * @param {ExecutorStatus | undefined} status of the execution that runs, else of the last one
  * @param {boolean} isAway the service does not answer
- * @param {Robot | null} robot
  * @returns {Child}
  */
-export function armState(status, isAway, robot) {
+export function armState(status, isAway) {
   if (isAway) return stateLine("Not known: the service does not answer. On a lost link the arm holds.");
   if (!status) return stateLine(element("span", { class: "dot idle" }), "At rest. Nothing has been executed yet.");
-  const reason = status.reason && element("span", { class: "reason" }, `: ${nameJoints(status.reason, robot)}`);
+  const reason = status.reason && element("span", { class: "reason" }, `: ${status.reason}`);
   return stateLine(element("span", { class: `dot ${status.state}` }), stateText(status), reason);
 }
 

@@ -1,7 +1,6 @@
 // Past executions: what the arm did at any instant, as plots and by a ghost arm.
 import { get, resourcePath } from "../api.js";
 import { GhostArm } from "../arm/ghost_arm.js";
-import { nameJoints } from "../arm/joint_names.js";
 import { JointPlots, plotRow } from "../arm/joint_plots.js";
 import { Motion } from "../arm/motion.js";
 import { MotionPlayer } from "../arm/motion_player.js";
@@ -113,8 +112,7 @@ class ExecutionReplay {
   /** @param {Execution[] | null} executions */
   #render(executions) {
     const newest = (executions ?? []).slice(0, MAX_LISTED);
-    const { robot } = this.context.store.state;
-    const rows = newest.map((one) => executionRow(one, this.#names.of(one.plan), one.id === this.#execution, robot));
+    const rows = newest.map((one) => executionRow(one, this.#names.of(one.plan), one.id === this.#execution));
     patchChildren(this.list, rows.length ? rows : element("li", { class: "hint" }, NOTHING));
   }
 }
@@ -143,17 +141,12 @@ function plotRows({ times, positions, velocities, tracking_error, lateness }, ar
   );
 }
 
-/**
- * @param {Execution} execution
- * @param {string} name of what was executed
- * @param {boolean} open
- * @param {Robot | null} robot
- */
-function executionRow({ id, plan, created_ns, status }, name, open, robot) {
+/** @param {Execution} execution @param {string} name of what was executed @param {boolean} open */
+function executionRow({ id, plan, created_ns, status }, name, open) {
   const digits = /** @type {const} */ ({ hour: "2-digit", minute: "2-digit", second: "2-digit" });
   const when = new Date(created_ns / 1e6).toLocaleTimeString([], { ...digits, hour12: false });
   const time = status.duration > 0 ? ` after ${formatNumber(status.duration, 1, "s")}` : "";
-  const reason = status.reason ? `: ${nameJoints(status.reason, robot)}` : "";
+  const reason = status.reason ? `: ${status.reason}` : "";
   const label = { "aria-label": `Replay the execution of ${when}${name && `: ${name}`}`, "aria-pressed": String(open) };
   return element(
     "li",

@@ -1,6 +1,5 @@
 // The jobs of the task: those that run, with progress and cancel, and the last one when it failed.
 import { post, resourcePath } from "../api.js";
-import { nameJoints } from "../arm/joint_names.js";
 import { closestData, element, hideSection, progressBar } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { capitalize } from "../texts.js";
@@ -21,11 +20,7 @@ export function jobList(place, { attempt }) {
       const running = jobs.filter((job) => job.state === "running" || job.state === "queued");
       const failed = jobs.slice(0, 1).filter((job) => job.state === "failed" && job.kind !== "plan"); // a path's card says why it has no plan
       hideSection(place, !running.length && !failed.length);
-      patchChildren(
-        place,
-        running.map(jobRow),
-        failed.map((job) => failedRow(job, state.robot)),
-      );
+      patchChildren(place, running.map(jobRow), failed.map(failedRow));
     },
   };
 }
@@ -42,11 +37,7 @@ function jobRow({ id, kind, message, state, fraction }) {
   );
 }
 
-/** @param {Job} job @param {Robot | null} robot */
-function failedRow({ kind, message }, robot) {
-  return element(
-    "p",
-    { class: "job failed" },
-    `${JOB_LABELS[kind] ?? capitalize(kind)} failed: ${nameJoints(message, robot)}`,
-  );
+/** @param {Job} job */
+function failedRow({ kind, message }) {
+  return element("p", { class: "job failed" }, `${JOB_LABELS[kind] ?? capitalize(kind)} failed: ${message}`);
 }

@@ -38,7 +38,7 @@ export function pathCards(place, { store, attempt, open, readOnly }) {
   return {
     show: () => pathSummaries.refresh(store.state),
     update(state, changed) {
-      if (isShown() && changesAny(changed, "runs", "selectedRun", "latestVersions", "jobs", "robot"))
+      if (isShown() && changesAny(changed, "runs", "selectedRun", "latestVersions", "jobs"))
         pathSummaries.refresh(state);
       const isNew = changesAny(changed, "runs", "selectedRun", "latestVersions", "path", "jobs", "task");
       if (isNew || changesAny(changed, "demonstrations", "pathSummaries"))

@@ -1,6 +1,5 @@
 // Summaries of the paths: whether the arm can follow, duration and clearance, from the newest plan, else from an assessment.
 import { ApiError, get, post, resourcePath } from "../api.js";
-import { nameJoints } from "../arm/joint_names.js";
 import { latestPaths } from "../store.js";
 import { formatLength, formatNumber, formatPercent } from "../texts.js";
 
@@ -30,9 +29,7 @@ export class PathSummaries {
       this.#request(key, () => (plan ? summarizePlan(plan) : summarizeAssessment(path)));
       const refused = job?.state === "failed" ? { verdict: "", facts: [], error: `Not certified: ${job.message}` } : {};
       const planning = job?.state === "queued" || job?.state === "running";
-      const summary = { ...this.#summaries.get(key), ...refused };
-      const error = summary.error && nameJoints(summary.error, state.robot);
-      found[path.id] = { ...summary, error, planning, planned: plan !== "" };
+      found[path.id] = { ...this.#summaries.get(key), ...refused, planning, planned: plan !== "" };
     }
     const { pathSummaries } = this.store.state;
     if (JSON.stringify(found) !== JSON.stringify(pathSummaries)) this.store.set({ pathSummaries: found });
@@ -59,10 +56,10 @@ export class PathSummaries {
 
 /**
  * The newest job that plans this version of a path.
- * @param {LearnedPath} path
+ * @param {Pick<LearnedPath, "id" | "version">} path
  * @param {Job[]} jobs
  */
-function newestPlanning({ id, version }, jobs) {
+export function newestPlanning({ id, version }, jobs) {
   return jobs.find(
     ({ kind, request }) => kind === "plan" && request.path === id && (request.version ?? version) === version,
   );

@@ -1,7 +1,6 @@
 // The plan of the selected path, shown by a ghost arm before anything moves.
 import { get, post, resourcePath } from "../api.js";
 import { GhostArm } from "../arm/ghost_arm.js";
-import { nameJoints, namePlace } from "../arm/joint_names.js";
 import { Motion } from "../arm/motion.js";
 import { MotionPlayer } from "../arm/motion_player.js";
 import { definitionList, element, hint, progressBar, tabButton } from "../elements.js";
@@ -61,7 +60,7 @@ class PlanPreview {
 
   /** @param {State} state @param {Changed} changed */
   update(state, changed) {
-    if (!changesAny(changed, "runs", "selectedRun", "path", "jobs", "task", "robot")) return;
+    if (!changesAny(changed, "runs", "selectedRun", "path", "jobs", "task")) return;
     const path = selectedPath(state);
     const planned = (state.jobs ?? []).filter((job) => job.kind === "plan" && job.request.path === path?.id);
     this.#job = planned[0] ?? null;
@@ -138,7 +137,9 @@ class PlanPreview {
     const newer = plan && this.#newestVersion > plan.path_version ? this.#newestVersion : 0;
     patchChildren(
       this.facts,
-      path ? content(path, plan, job, newer, this.context) : [hint(NOTHING), tabButton("ways", "Go to the ways")],
+      path
+        ? content(path, plan, job, newer, this.context.readOnly)
+        : [hint(NOTHING), tabButton("ways", "Go to the ways")],
     );
     const wanted = path !== null && (plan === null || newer > 0) && !working && !this.context.readOnly;
     this.planButton.hidden = !wanted;
@@ -152,25 +153,23 @@ class PlanPreview {
  * @param {Plan | null | undefined} plan
  * @param {Job | null} job
  * @param {number} newer version that is not certified yet, or 0
- * @param {Context} context
+ * @param {boolean} readOnly
  * @returns {Child[]}
  */
-function content(path, plan, job, newer, { readOnly, store }) {
-  const { robot } = store.state;
+function content(path, plan, job, newer, readOnly) {
   const title = element("p", {}, `Way ${path.cluster}${plan ? `, version ${plan.path_version}` : ""}.`);
   if (job?.state === "queued" || job?.state === "running") {
     return [title, hint(job.message || "Planning …"), progressBar(job.fraction, "planning")];
   }
   if (plan === undefined) return [title, hint("Looking for its certified motion …")];
-  if (plan)
-    return [title, newer > 0 && hint(`Version ${newer} is newer and not certified yet.`), planFacts(plan, robot)];
+  if (plan) return [title, newer > 0 && hint(`Version ${newer} is newer and not certified yet.`), planFacts(plan)];
   if (job?.state !== "failed") return [title, hint("This path has no certified motion yet.")];
-  const why = element("p", { class: "failed" }, `It cannot be run: ${nameJoints(job.message, robot)}`);
+  const why = element("p", { class: "failed" }, `It cannot be run: ${job.message}`);
   return [title, why, !readOnly && tabButton("edit", "Edit the path")];
 }
 
-/** @param {Plan} plan @param {Robot | null} robot */
-function planFacts({ duration, certificate, tool_speed: limit }, robot) {
+/** @param {Plan} plan */
+function planFacts({ duration, certificate, tool_speed: limit }) {
   const { position_use, velocity_use, acceleration_use, jerk_use, torque_use } = certificate;
   const uses = [position_use, velocity_use, acceleration_use, jerk_use, torque_use];
   const toolSpeed = certificate.tool_speed;
@@ -178,7 +177,7 @@ function planFacts({ duration, certificate, tool_speed: limit }, robot) {
   return definitionList([
     ["Time on the path", formatNumber(duration, 2, "s")],
     ["Least clearance", formatLength(certificate.clearance.value)],
-    ["Nearest to a limit", `${formatPercent(most.value)}, ${namePlace(most.place, certificate, robot)}`],
+    ["Nearest to a limit", `${formatPercent(most.value)}, ${most.place}`],
     toolSpeed && [
       "Fastest",
       `${formatNumber(toolSpeed.value, 2, "m/s")}, ${toolSpeed.place}${limit ? `; limit ${formatNumber(limit, 2, "m/s")}` : ""}`,

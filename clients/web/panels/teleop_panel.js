@@ -1,6 +1,5 @@
 // Teleoperation: the arm follows a live hand while its clutch is held; why it slows down or stops is shown.
 import { get, post, resourcePath } from "../api.js";
-import { nameJoints } from "../arm/joint_names.js";
 import { lease } from "../arm/lease.js";
 import { block } from "../elements.js";
 import { TeleopSession } from "../hand/teleop_session.js";
@@ -181,7 +180,7 @@ class TeleopPanel {
       this.context.messages.show(sentence, status.state === "faulted" ? "error" : "note");
       return;
     }
-    const text = nameJoints(teleopText(status, this.session), this.context.store.state.robot);
+    const text = teleopText(status, this.session);
     if (this.parts.statusText.textContent !== text) this.parts.statusText.textContent = text;
     this.headset?.rig.setText(text);
   }

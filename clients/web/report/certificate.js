@@ -1,5 +1,4 @@
 // The certificate of the chosen way's plan: how near each limit is approached and where, and what it was signed as.
-import { namePlace } from "../arm/joint_names.js";
 import { definitionList, element, hideSection } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { formatLength, formatNumber, formatPercent } from "../texts.js";
@@ -16,21 +15,21 @@ const USES = [
 /** @param {HTMLElement} place @returns {Section} */
 export function certificate(place) {
   return {
-    update({ plan, robot }) {
+    update({ plan }) {
       hideSection(place, !plan);
-      if (plan) patchChildren(place, content(plan, robot));
+      if (plan) patchChildren(place, content(plan));
     },
   };
 }
 
-/** @param {Plan} plan @param {Robot | null} robot @returns {Child[]} */
-function content({ certificate }, robot) {
+/** @param {Plan} plan @returns {Child[]} */
+function content({ certificate }) {
   const { clearance, digest, tool_speed } = certificate;
   return [
     definitionList([
       ...USES.map(([name, key]) => {
         const { value, place } = certificate[key];
-        return /** @type {Fact} */ ([name, `${formatPercent(value)}, ${namePlace(place, certificate, robot)}`]);
+        return /** @type {Fact} */ ([name, `${formatPercent(value)}, ${place}`]);
       }),
       tool_speed && ["Speed in space", `${formatNumber(tool_speed.value, 3, "m/s")}, ${tool_speed.place}`],
       ["Clearance", `${formatLength(clearance.value)}, ${clearance.place}`],

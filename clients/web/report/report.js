@@ -68,7 +68,6 @@ connectViewControls(view, store);
 keepFocus();
 const arm = Uint8Array.from(atob(byId("arm").textContent ?? ""), (letter) => letter.charCodeAt(0));
 view.draw(arm.buffer);
-eventStream.readRobot();
 eventStream.readAll();
 
 // What the browser tests may ask.

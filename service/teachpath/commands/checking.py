@@ -25,8 +25,6 @@ from teachpath.records import Plan
 def judge_file(file: Path, plan: str | None, url: str, config: Path | None, *, json_: bool = False) -> None:
     """Judge a log of setpoints, print what was measured, and end with status 1 and a sentence when it breaks something.
 
-    The sentences count the joints from 1; an arm that was added has names for them, which are printed too.
-
     Args:
         file: a recording of an execution (MCAP), or a CSV.
         plan: id of the plan that was meant, when the file does not say.
@@ -47,17 +45,14 @@ def judge_file(file: Path, plan: str | None, url: str, config: Path | None, *, j
     arm = with_arm(load(config)).arm
     judged = (meant and certified_arm(meant, arm)) or arm
     judgement = check_log(log, path, judged)
-    joints = [joint.name for joint in judged.model.joints] if judged.model else []
     if json_:
         measured = {"measured": judgement.measured, "faults": judgement.faults}
-        print_json({"file": str(file), "arm": judged.name, "joints": joints, **measured})
+        print_json({"file": str(file), "arm": judged.name, "joints": judged.limits.names, **measured})
     else:
         for sentence in judgement.measured:
             print(sentence)
         for sentence in judgement.faults:
             print(f"BROKEN: {sentence}")
-        if joints:
-            print(f"joints of {judged.name}: {', '.join(f'{number} {name}' for number, name in enumerate(joints, 1))}")
     if judgement.faults:
         sys.exit(f"teachpath: {file.name} breaks {len(judgement.faults)} of what it must keep: {judgement.faults[0]}")
     if not json_:

@@ -41,6 +41,7 @@ class LimitMeter:
     def __init__(self, rate: float, start_q: Array, arm: Arm, previous: LimitMeter | None = None) -> None:
         limits = arm.limits.motion
         self._arm, self._rate = arm, rate
+        self._names = arm.limits.names
         self._tool_speed = limits.tool_speed
         self._points = monitored_points(start_q, arm)
         self._scale = np.array([rate, rate**2, rate**3])[:, None] / np.stack(
@@ -62,7 +63,7 @@ class LimitMeter:
         if use.flat[worst] > self.max_use:
             kind, joint = divmod(worst, 6)
             self.max_use = float(use.flat[worst])
-            self.max_use_location = f"{_NAMES[kind]} of joint {joint + 1} {where.location}"
+            self.max_use_location = f"{_NAMES[kind]} of {self._names[joint]} {where.location}"
         if self._tool_speed < np.inf:
             self._add_tool(position, where)
 

@@ -15,6 +15,7 @@ class SampledMotion:
         name: id of the plan or the execution.
         stamp_ns: when it was planned, or began [ns since the Unix epoch].
         notes: what a reader must know of it, one sentence each: arm, limits, certificate, and what it does not cover.
+        joint_names: in the order of the columns, as the arm calls them.
         rate: instants a second [Hz].
         times: (n,) [s], from 0.
         positions: (n, 6) of the joints [rad].
@@ -25,6 +26,7 @@ class SampledMotion:
     name: str
     stamp_ns: int
     notes: tuple[str, ...]
+    joint_names: tuple[str, ...]
     rate: float
     times: Array
     positions: Matrix

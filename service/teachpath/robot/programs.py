@@ -113,10 +113,11 @@ def write_execution(recording: Path, name: str, format: str, rate: float, arm: A
     motion = read_motion(recording)
     check_rate(rate, recorded_duration(motion.setpoints))
     plan = motion.header.plan if motion.header else None
+    moved = (plan and certified_arm(plan, arm)) or arm
     notes = (
         f"Execution {name}: the {len(motion.setpoints)} setpoints that were sent"
         + (f" to follow plan {plan.id}." if plan else " to follow a live hand."),
         "It is what was recorded, holds and changes of speed included; no certificate covers it as a whole.",
-        *arm_notes((plan and certified_arm(plan, arm)) or arm),
+        *arm_notes(moved),
     )
-    return format_named(format).write(sample_setpoints(motion.setpoints, rate, name, notes))
+    return format_named(format).write(sample_setpoints(motion.setpoints, rate, name, notes, moved.limits.names))

@@ -43,7 +43,6 @@ declare global {
     recordings: ActiveRecording[];
     trackers: { name: string }[];
     guidance: Record<string, string>;
-    robot: Robot | null;
     station: { notes: string[]; authority: boolean; documents: boolean } | null;
     executor: ExecutorStatus | null;
     lease: LeaseState | null;

@@ -9,7 +9,6 @@ from teachpath.io.programs.cdr import CdrWriter
 from teachpath.records import SampledMotion
 
 TYPE: Final = "trajectory_msgs/msg/JointTrajectory"
-JOINT_NAMES: Final = tuple(f"joint{number}" for number in range(1, 7))  # as in the arm's MJCF model
 SECOND: Final = 1_000_000_000  # [ns]
 
 
@@ -28,7 +27,7 @@ def joint_trajectory_cdr(motion: SampledMotion) -> bytes:
     writer.int32(0)  # header.stamp: when it is received
     writer.uint32(0)
     writer.string("")  # header.frame_id: joints have none
-    writer.strings(JOINT_NAMES)
+    writer.strings(_joint_names(motion))
     writer.uint32(len(motion.times))
     rows = zip(motion.positions, motion.velocities, motion.accelerations, _durations(motion), strict=True)
     for position, velocity, acceleration, (seconds, nanoseconds) in rows:
@@ -37,6 +36,11 @@ def joint_trajectory_cdr(motion: SampledMotion) -> bytes:
         writer.int32(seconds)
         writer.uint32(nanoseconds)
     return writer.content
+
+
+def _joint_names(motion: SampledMotion) -> list[str]:
+    """Return the names of the joints without spaces, as in the arm's URDF or MJCF model."""
+    return [name.replace(" ", "") for name in motion.joint_names]
 
 
 def _message(motion: SampledMotion) -> dict[str, Any]:
@@ -49,7 +53,7 @@ def _message(motion: SampledMotion) -> dict[str, Any]:
     )
     return {
         "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},
-        "joint_names": JOINT_NAMES,
+        "joint_names": _joint_names(motion),
         "points": [
             {
                 "positions": position,

@@ -62,14 +62,14 @@ TARGETS: Final[dict[str, RobotTarget]] = {
 }
 
 
-def largest_deviation(motion: SampledMotion, target: RobotTarget) -> tuple[float, int, float]:
+def largest_deviation(motion: SampledMotion, target: RobotTarget) -> tuple[float, str, float]:
     """Return by how much a controller may leave a motion between its points [rad], by which joint, and when [s]."""
     bends = np.abs(np.diff(motion.positions, 2, axis=0))  # a T^2
     if not len(bends):
-        return 0.0, 1, 0.0
+        return 0.0, "", 0.0
     row, joint = np.unravel_index(int(np.argmax(bends)), bends.shape)
     share = 3 / 8 if target.rounds_corners else 1 / 8
-    return share * float(bends[row, joint]), int(joint) + 1, float(motion.times[row + 1])
+    return share * float(bends[row, joint]), motion.joint_names[joint], float(motion.times[row + 1])
 
 
 def check_target(motion: SampledMotion, target: RobotTarget) -> None:
@@ -107,7 +107,7 @@ def _check_deviation(motion: SampledMotion, target: RobotTarget, cycles: int) ->
     )
     raise UnusableInput(
         f"between points {1e3 / motion.rate:.4g} ms apart {target.title} may leave the plan by {deviation:.4f} rad "
-        f"(joint {joint} at {time:.2f} s), limit {MAX_DEVIATION:g}; {way_out}"
+        f"({joint} at {time:.2f} s), limit {MAX_DEVIATION:g}; {way_out}"
     )
 
 

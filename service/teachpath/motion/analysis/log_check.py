@@ -94,7 +94,7 @@ def _positions(log: SetpointLog, limits: JointLimits) -> tuple[bool, str]:
     outside = np.maximum(limits.lower - log.positions, log.positions - limits.upper)
     row, joint = np.unravel_index(int(np.argmax(outside)), outside.shape)
     least = float(outside[row, joint])
-    where = f"joint {joint + 1} at {log.times[row] - log.times[0]:.3f} s"
+    where = f"{limits.names[joint]} at {log.times[row] - log.times[0]:.3f} s"
     if least > 0:
         between = f"{limits.lower[joint]:.3f} to {limits.upper[joint]:.3f}"
         return False, f"{where} is {least:.4f} rad beyond its limit ({between})"
@@ -119,7 +119,7 @@ def _differences(log: SetpointLog, period: float, limits: JointLimits) -> list[t
     for order, (name, limit) in enumerate(zip(QUANTITIES, each, strict=True), 1):
         uses = np.concatenate([_use(log.positions[run], order) / period**order / limit for run in runs])
         row, joint = np.unravel_index(int(np.argmax(uses)), uses.shape)
-        where = f"joint {joint + 1} at {log.times[row] - log.times[0]:.3f} s"
+        where = f"{limits.names[joint]} at {log.times[row] - log.times[0]:.3f} s"
         largest = float(uses[row, joint])
         found.append((largest <= 1.0 + LIMIT_TOLERANCE, f"{name} limit used to {100 * largest:.2f} % by {where}"))
     return found

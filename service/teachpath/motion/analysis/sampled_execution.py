@@ -13,7 +13,9 @@ from teachpath.records import SampledMotion, Setpoint
 MIN_SETPOINTS = 4
 
 
-def sample_setpoints(setpoints: Sequence[Setpoint], rate: float, name: str, notes: tuple[str, ...]) -> SampledMotion:
+def sample_setpoints(
+    setpoints: Sequence[Setpoint], rate: float, name: str, notes: tuple[str, ...], joint_names: tuple[str, ...]
+) -> SampledMotion:
     """Return the motion through recorded setpoints, at `rate` instants a second [Hz].
 
     At the instants of setpoints the joints and their speeds are those of the setpoints.
@@ -23,6 +25,7 @@ def sample_setpoints(setpoints: Sequence[Setpoint], rate: float, name: str, note
         rate: instants a second [Hz].
         name: of the execution.
         notes: what a reader must know of it.
+        joint_names: of the arm that was sent them.
 
     Raises:
         UnusableRecording: there are hardly any setpoints.
@@ -42,7 +45,7 @@ def sample_setpoints(setpoints: Sequence[Setpoint], rate: float, name: str, note
     at = np.minimum(times, due[-1])
     commanded = np.array([s.acceleration for s in rows])
     accelerations = np.column_stack([np.interp(at, due, joint) for joint in commanded.T])
-    return SampledMotion(name, begin_ns, notes, rate, times, path(at), path(at, 1), accelerations)
+    return SampledMotion(name, begin_ns, notes, joint_names, rate, times, path(at), path(at, 1), accelerations)
 
 
 def recorded_duration(setpoints: Sequence[Setpoint]) -> float:

@@ -137,13 +137,13 @@ def _joints(arm: Arm) -> tuple[JointGeometry, ...]:
         relative = np.linalg.inv(before) @ frame
         w, x, y, z = Rotation.from_matrix(relative[:3, :3]).as_quat(scalar_first=True)
         if arm.model is None:  # it turns about z of the frame before
-            name, axis = f"joint {number + 1}", _vector(relative[2, :3])
+            axis = _vector(relative[2, :3])
             anchor = _vector(-relative[:3, :3].T @ relative[:3, 3])
         else:
             joint = arm.model.joints[number]
-            name, axis, anchor = joint.name, joint.axis, joint.anchor
+            axis, anchor = joint.axis, joint.anchor
         turn = (float(w), float(x), float(y), float(z))
-        made.append(JointGeometry(name, _vector(relative[:3, 3]), turn, axis, anchor))
+        made.append(JointGeometry(arm.limits.names[number], _vector(relative[:3, 3]), turn, axis, anchor))
     return tuple(made)
 
 

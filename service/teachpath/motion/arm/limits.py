@@ -41,6 +41,7 @@ class JointLimits:
     """What the joints of an arm may do: (6,) each, read-only.
 
     Attributes:
+        names: of the joints, as sentences call them.
         lower: least angle [rad], with the zero position of Paul.
         upper: largest angle [rad].
         speed: [rad/s].
@@ -50,6 +51,7 @@ class JointLimits:
         tool_speed: of elbow, wrist and tool centre point [m/s]; infinite where none is set.
     """
 
+    names: tuple[str, ...]
     lower: Array
     upper: Array
     speed: Array
@@ -68,6 +70,7 @@ class JointLimits:
             return values
 
         return cls(
+            names=tuple(f"joint {number}" for number in range(1, len(links) + 1)),
             lower=column("lower"),
             upper=column("upper"),
             speed=column("speed"),
@@ -87,6 +90,7 @@ class JointLimits:
             return values
 
         return cls(
+            names=tuple(joint.name for joint in model.joints),
             lower=column("lower"),
             upper=column("upper"),
             speed=column("speed"),

@@ -41,6 +41,7 @@ class TorqueCheck:
         held = (None, model.scene.carried) if model.scene.carried else (None,)
         self._dynamics = [Dynamics(model.arm, each) for each in held]
         self._torque = model.arm.limits.torque
+        self._names = model.arm.limits.names
 
     def __call__(self, motion: ConstantJerkMotion, stride: int) -> str:
         """Say which motor may be too weak at some moment of a motion, by one of `TORQUE_STRIDES`, or nothing."""
@@ -48,8 +49,8 @@ class TorqueCheck:
             bounds = dynamics.motion_bounds(motion.states, motion.turns(), motion.period, stride)
             uses = (bounds / self._torque).max(axis=0)
             if uses.max() > 1.0:
-                joint = 1 + int(np.argmax(uses))
-                return f"the motor of joint {joint} is too weak there for the arm and what it carries"
+                joint = self._names[int(np.argmax(uses))]
+                return f"the motor of {joint} is too weak there for the arm and what it carries"
         return ""
 
 

@@ -146,7 +146,7 @@ def _first_fault(joints: Array, out_of_reach: Array, singular: Array, arm: Arm) 
 def describe_limit(joint: int, angle: float, arm: Arm) -> str:
     """Say that a joint, counted from 0, is at its limit where it would turn to `angle` [rad]."""
     limit = arm.limits.upper[joint] if angle > arm.limits.upper[joint] else arm.limits.lower[joint]
-    return f"joint {joint + 1} is at its limit of {degrees(limit):.0f} degrees"
+    return f"{arm.limits.names[joint]} is at its limit of {degrees(limit):.0f} degrees"
 
 
 def _describe(asked: _Way, best: _Way) -> str:

@@ -46,7 +46,7 @@ class Pace:
         self._speeds = self._widest[0]
         self._share = 1.0  # of speed, acceleration and jerk, for the wrist's sake
         self.reach = 1.0
-        self._joint = 0
+        self._joint = ""  # that slows the tool
 
     @property
     def limits(self) -> Array:
@@ -58,7 +58,7 @@ class Pace:
     @property
     def reason(self) -> str:
         """That the wrist slows the tool down, in words, while it slows it much; else empty."""
-        return f"joint {self._joint} turns as fast as it may, so the tool is slow" if self._share < SLOW_SHARE else ""
+        return f"{self._joint} turns as fast as it may, so the tool is slow" if self._share < SLOW_SHARE else ""
 
     def keeps(self, motion: ToolMotion) -> bool:
         """Tell whether a motion keeps all limits at every moment, and is soon over; else adapt."""
@@ -66,7 +66,7 @@ class Pace:
         speeding = motion.joints.tool_speed_bound(self._arm) / (TOOL_SPEED_SHARE * self._limits.tool_speed)
         duration = len(motion) * self._period
         if uses.max() > 1.0:
-            self._joint = 1 + int(np.argmax(uses))
+            self._joint = self._arm.limits.names[int(np.argmax(uses))]
             self._share = max(MARGIN * self._share / float(uses.max()), MIN_SHARE)
         if speeding > 1.0:
             self._speeds = np.maximum(motion.leading_speeds * MARGIN / speeding, MIN_SPEED)

@@ -266,7 +266,7 @@ def describe_fault(candidate: Candidate, path: ToolPath, node: int, fault: str, 
         limits = candidate.branch.arm.limits
         limit = limits.upper[joint] if angle > limits.upper[joint] else limits.lower[joint]
         return (
-            f"joint {joint + 1} needs {degrees(angle):.1f} deg, limit {degrees(limit):.1f}, {where} "
+            f"{limits.names[joint]} needs {degrees(angle):.1f} deg, limit {degrees(limit):.1f}, {where} "
             f"({candidate.description} comes nearest)"
         )
     if fault == "turn":

@@ -95,7 +95,7 @@ def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tu
     """
     middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
     shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, limits.motion, rate)]
-    position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6]) for share in shares)
+    position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6], limits.names) for share in shares)
     return position, velocity, acceleration, jerk
 
 

@@ -37,11 +37,10 @@ def check_joints(arm: Arm) -> None:
 
 def check_home(settings: MotionSettings, arm: Arm) -> None:
     """Check that the joints reach the arm's home; raises UnusableSettings."""
-    lower, upper = arm.limits.lower, arm.limits.upper
-    for joint, angle in enumerate(settings.home):
-        if not lower[joint] <= angle <= upper[joint]:
-            limits = f"{lower[joint]:.3f} to {upper[joint]:.3f}"
-            raise UnusableSettings(f"motion.home puts joint {joint + 1} to {angle:.3f} rad, limits {limits}")
+    limits = arm.limits
+    for name, angle, lower, upper in zip(limits.names, settings.home, limits.lower, limits.upper, strict=True):
+        if not lower <= angle <= upper:
+            raise UnusableSettings(f"motion.home puts {name} to {angle:.3f} rad, limits {lower:.3f} to {upper:.3f}")
 
 
 def with_home(settings: MotionSettings, arm: Arm) -> MotionSettings:

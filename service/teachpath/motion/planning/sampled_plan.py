@@ -28,4 +28,6 @@ def sample_plan(plan: Plan, rate: float, arm: Arm) -> SampledMotion:
     velocities[resting] = accelerations[resting] = 0.0  # in the table they are as small as the integration of time
     signature = plan.certificate.signature
     issued_ns = signature.issued_ns if signature else 0
-    return SampledMotion(plan.id, issued_ns, plan_notes(plan, arm), rate, times, positions, velocities, accelerations)
+    return SampledMotion(
+        plan.id, issued_ns, plan_notes(plan, arm), arm.limits.names, rate, times, positions, velocities, accelerations
+    )

@@ -65,7 +65,8 @@ def time_within_torques(
         trajectory = time_joint_path(joints, squared_rates, limits)
         rows = trajectory.table[::TORQUE_STRIDE]
         q, velocity = rows[:, 0, :6], rows[:, 1, :6]
-        worst = largest_use(dynamics.torque_bounds(q, velocity, limits.acceleration), rows[:, 0, 6], arm.limits.torque)
+        bounds = dynamics.torque_bounds(q, velocity, limits.acceleration)
+        worst = largest_use(bounds, rows[:, 0, 6], arm.limits.names, arm.limits.torque)
         if worst.value <= 1.0:
             _check_tolerance(tool_path, joints, arm, settings)
             return TimedPath(joints, squared_rates, limits, trajectory, worst)

@@ -7,6 +7,7 @@ takes longer. A plan that runs backwards has its margins on the other side, so i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -66,18 +67,19 @@ def limit_uses(setpoints: Array, limits: MotionLimits, rate: float) -> tuple[Arr
     return first, second, third
 
 
-def largest_use(values: Array, lengths: Array, limits: Array | float = 1.0) -> Extreme:
+def largest_use(values: Array, lengths: Array, names: Sequence[str], limits: Array | float = 1.0) -> Extreme:
     """Return the largest share of the limits (6,) in values (n, 6), with its joint and arc length.
 
     Args:
         values: (n, 6) of the joints.
         lengths: (n,) arc lengths where they occur [m].
+        names: of the joints.
         limits: (6,), or 1 for values that are shares already.
     """
     share = values / limits
     row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
     s = float(lengths[row])
-    return Extreme(float(share[row, joint]), f"joint {joint + 1} at s = {s:.3f} m", s)
+    return Extreme(float(share[row, joint]), f"{names[int(joint)]} at s = {s:.3f} m", s)
 
 
 def _changes(setpoints: Array, rate: float) -> list[Array]:

@@ -77,6 +77,8 @@ def test_the_certificate_says_what_it_is_of_and_is_of_no_other_arm(plan: Plan, a
     assert said.endswith("limits by default: acceleration, jerk")
     assert plan.certificate.clearance.value >= SETTINGS.clearance_min
     assert plan.certificate.torque_use.value <= 1.0
+    for name in ("position_use", "velocity_use", "acceleration_use", "jerk_use", "torque_use"):
+        assert getattr(plan.certificate, name).place.split(" at ")[0] in [joint.name for joint in arm.joints]
     for other in (replace(arm, payload_mass=0.1), None):
         with pytest.raises(PathRefused, match="is for another arm"):
             teachpath.setpoints(plan, arm=other)
