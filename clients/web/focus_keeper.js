@@ -1,5 +1,6 @@
 // Keeps the keyboard where the work is: when what has the focus is taken away, hidden or disabled, the focus goes to what is
-// next to it. A browser would give it to the page as a whole, from where one begins anew.
+// next to it, and back once that can have it again: from Start to Hold, and at the end of the motion back to Start. A browser
+// would give it to the page as a whole, from where one begins anew.
 
 const FOCUSABLE = "a[href], button, input:not([type=hidden]), select, textarea, summary, [tabindex='0']";
 const PARTS = "section, dialog, [popover], header, [role=tabpanel]"; // that the focus does not leave by itself
@@ -11,20 +12,28 @@ export function keepFocus() {
   /** @type {Element[]} */
   let around = []; // what it stood in, innermost first: it may be taken out
   let hasMoved = false; // while a key is held
+  /** @type {Element[]} */
+  let lenders = []; // it goes back to them, newest first
+  /** @type {Element | null} */
+  let heir = null; // that was given it
 
   document.addEventListener("focusin", ({ target }) => {
     last = target instanceof Element ? target : null;
     around = last ? ancestors(last) : [];
+    if (last !== heir) lenders = []; // somebody has gone on
   });
   document.addEventListener("focusout", ({ relatedTarget }) => {
     if (relatedTarget === null && last && mayHaveFocus(last)) last = null;
   });
   new MutationObserver(() => {
     if (!last || mayHaveFocus(last)) return;
-    const next = neighbour(last, around);
+    const back = lenders.findLastIndex((one) => mayHaveFocus(one) && one.checkVisibility());
+    const next = back < 0 ? neighbour(last, around) : lenders[back];
+    lenders = back < 0 ? [...lenders, last] : lenders.slice(0, back);
     last = null;
+    heir = next;
     hasMoved = true;
-    next?.focus();
+    if (next instanceof HTMLElement) next.focus();
   }).observe(document.body, {
     subtree: true,
     childList: true,

@@ -62,6 +62,8 @@ export class Tabs {
     this.current = id;
     this.#render();
     this.panels.scrollTop = next.scrolled;
+    // On a phone the page scrolls as a whole: a panel begins with its begin, not where the one before was read.
+    if (this.panels.getBoundingClientRect().top < 0) this.panels.scrollIntoView();
     this.onSelect(id);
   }
 

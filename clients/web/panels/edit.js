@@ -1,6 +1,6 @@
 // Edit: the chosen path's control points, knots and versions; the curve itself is edited in the 3-D view.
 import { adaptationSection } from "../editor/adaptation.js";
-import { certificationSection } from "../editor/certification.js";
+import { certificationSection, isCertified } from "../editor/certification.js";
 import { controlPointsSection } from "../editor/control_points.js";
 import { Editor } from "../editor/editor.js";
 import { feasibilitySection } from "../editor/feasibility.js";
@@ -21,6 +21,7 @@ const VERDICTS = {
   yes: ["good", "The arm can probably follow"],
   no: ["failed", "The arm cannot follow"],
   unknown: ["hint", "Being assessed …"],
+  certified: ["good", "This version is certified"],
 };
 
 /** @type {EditPanel | null} */
@@ -60,7 +61,7 @@ class EditPanel {
     const foot = element("div", { class: "edit-foot" });
     editor.add(
       steps,
-      verdictLine(foot),
+      verdictLine(editor, foot),
       feasibilitySection(section(this.sections, "edit-arm", "Can the arm follow?"), editor),
       controlPointsSection(section(this.sections, "edit-place", "Control points"), editor),
       adaptationSection(section(this.sections, "edit-adaptation", "An object that lies elsewhere"), editor),
@@ -100,17 +101,23 @@ class EditPanel {
   }
 }
 
-/** Whether the arm can follow, in a few words that are always in view. @param {HTMLElement} foot @returns {EditorSection} */
-function verdictLine(foot) {
+/** Whether the arm can follow, in a few words that are always in view. @param {Editor} editor @param {HTMLElement} foot @returns {EditorSection} */
+function verdictLine(editor, foot) {
   const line = element("p", { class: "verdict-line" });
   foot.append(line);
+  const render = () => {
+    const { assessment, error } = editor.feasibility ?? {};
+    const assessed = error || assessment?.failure ? VERDICTS.no : assessment ? VERDICTS.yes : VERDICTS.unknown;
+    const [look, text] = isCertified(editor) ? VERDICTS.certified : assessed;
+    line.className = `verdict-line ${look}`;
+    line.textContent = text;
+  };
+  editor.context.store.subscribe((_state, changed) => {
+    if (changed.has("jobs")) render();
+  });
   return {
-    update({ draft, feasibility }, what) {
-      if (!draft || (what !== "feasibility" && what !== "draft")) return;
-      const { assessment, error } = feasibility ?? {};
-      const [look, text] = error || assessment?.failure ? VERDICTS.no : assessment ? VERDICTS.yes : VERDICTS.unknown;
-      line.className = `verdict-line ${look}`;
-      line.textContent = text;
+    update({ draft }, what) {
+      if (draft && (what === "feasibility" || what === "draft")) render();
     },
   };
 }
