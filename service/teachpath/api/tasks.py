@@ -97,7 +97,10 @@ def _add_changes(router: APIRouter, parts: Parts) -> None:
 
     @router.patch("/tasks/{task}", responses=refusals(409, 507) | located(200, "the task"), dependencies=TEACH)
     def rename_task(task: str, wanted: TaskChanges, response: Response) -> Task:
-        """Give a task another name, with all that is of it; `Location` is its address from now on."""
+        """Give a task another name, with all that is of it; `Location` is its address from now on.
+
+        Its recordings stay in the folder of the name that they were recorded under: their place and hash do not change.
+        """
         _require_name(wanted.name)
         with recorder.kept_idle(task):
             renamed = changes.rename(task, wanted.name)
