@@ -98,6 +98,7 @@ class TrackerBench:
 
     def _serve(self, key: str, answer: Callable[[bytes], RecordingReport]) -> Any:
         def reply(query: zenoh.Query) -> None:
+            """Answer a query of the tracker, by the fault where there is one."""
             with query:
                 try:
                     payload = query.payload.to_bytes() if query.payload is not None else b""

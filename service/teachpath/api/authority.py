@@ -39,16 +39,19 @@ def authority_router(parts: Parts) -> APIRouter:
 
     @router.get("/authority", dependencies=OPEN)
     def show_steps(request: Request) -> Response:
+        """Show what a device does to trust this station, with the fingerprint to compare."""
         digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(authority())).digest().hex(":").upper()
         page = (web_files() / PAGE).read_text().replace(FINGERPRINT, digest).replace(ADDRESS, address(request))
         return Response(page, headers=HEADERS, media_type=HTML)
 
     @router.get("/authority.crt", dependencies=OPEN)
     def download_authority() -> Response:
+        """Return the authority's certificate, which a device is to trust."""
         return Response(authority(), headers=HEADERS, media_type="application/x-x509-ca-cert")
 
     @router.get("/authority/address.svg", dependencies=OPEN)
     def show_code(request: Request) -> Response:
+        """Draw the address of the steps as a QR code."""
         import segno
 
         authority()

@@ -22,6 +22,8 @@ def events_router(hub: EventHub) -> APIRouter:
 
     @router.websocket("/api/v1/events", dependencies=VIEW)
     async def events(socket: WebSocket) -> None:
+        """Send what changes at the station, of each topic and id the newest."""
+
         async def send(event: Event) -> None:
             await socket.send_text(event.text)
 

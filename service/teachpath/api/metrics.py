@@ -109,6 +109,7 @@ def metrics_router(parts: Parts, registry: CollectorRegistry) -> APIRouter:
 
     @router.get("/metrics", dependencies=VIEW)
     def get_metrics() -> Response:
+        """Return the figures of the station in the text form of Prometheus."""
         return Response(generate_latest(registry), headers={"Content-Type": CONTENT_TYPE_LATEST})
 
     return router

@@ -166,6 +166,7 @@ def _add_recordings(router: APIRouter, parts: Parts) -> None:
         return _report(recorder.resume(of_task(task, choice.tracker)))
 
     def of_task(task: str, tracker: str) -> str:
+        """Return a tracker that records this task; raises UnusableInput for another."""
         name = parts.store.task(task).name
         running = {status.tracker for status in recorder.statuses() if status.task == name}
         if tracker not in running:

@@ -87,6 +87,7 @@ async def serve(
             await close(socket, fault)
 
     async def forward() -> None:
+        """Send what the source has, one message at a time, until the page is gone."""
         with suppress(WebSocketDisconnect, RuntimeError):
             while True:
                 await waiting.wait()

@@ -121,10 +121,12 @@ def description_router(app: FastAPI) -> APIRouter:
 
     @router.get("/openapi.json", dependencies=OPEN)
     def get_description() -> dict[str, Any]:
+        """Return the description of this API in OpenAPI."""
         return app.openapi()
 
     @router.get("/asyncapi.json", dependencies=OPEN)
     def get_live_description() -> dict[str, Any]:
+        """Return the description of the WebSockets in AsyncAPI."""
         return live_description()
 
     return router

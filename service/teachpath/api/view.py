@@ -61,18 +61,22 @@ def view_router(preview: Preview) -> APIRouter:
 
     @router.get("/", dependencies=OPEN)
     def page(request: Request) -> Response:
+        """Return the operator's page."""
         return files.answer(request, root / "index.html", HTML, entry="page.js")
 
     @router.get("/docs", dependencies=OPEN)
     def docs(request: Request) -> Response:
+        """Return the page that shows the API."""
         return files.answer(request, root / "docs.html", HTML)
 
     @router.get("/favicon.ico", dependencies=OPEN)
     def icon(request: Request) -> Response:
+        """Return the icon that browsers ask for."""
         return answer(request, root / "icon.svg", ".svg")
 
     @router.get("/web/{name:path}", dependencies=OPEN)
     def module(request: Request, name: str) -> Response:
+        """Return a file of the page, and nothing from outside its folder."""
         try:
             path = (root / name).resolve(strict=True)
         except (OSError, ValueError):  # no name that a file can have
@@ -83,11 +87,13 @@ def view_router(preview: Preview) -> APIRouter:
 
     @router.get("/vendor/{name}", dependencies=OPEN)
     def vendored(request: Request, name: str) -> Response:
+        """Return a library that the page loads."""
         place, suffix = _VENDORED.get(name, ("", ""))
         return answer(request, viewer / place, suffix) if place else _missing(name)
 
     @router.websocket("/api/v1/view", dependencies=VIEW)
     async def view(socket: WebSocket) -> None:
+        """Send the 3-D view and its changes."""
         if await sockets.accept(socket):
             await sockets.serve(socket, preview.connect, preview.disconnect, socket.send_bytes, _acknowledge)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import print_json
+from teachpath.commands.printing import print_answer
 from teachpath.commands.progress import job_shown, progress_bar
 from teachpath.commands.references import find_path
 from teachpath.errors import UnusableInput
@@ -37,10 +37,7 @@ def adapt(
 
     with connected(url) as station:
         plan = adapted_plan(station, find_path(station, path), start, goal, version=version, branch=branch)
-    if json_:
-        print_json(plan)
-    else:
-        print(plan_lines(plan))
+    print_answer(plan, plan_lines(plan), json_=json_)
 
 
 def adapted_plan(station: Station, path: str, start: str, goal: str, **options: Any) -> Plan:
@@ -73,10 +70,11 @@ def object_(
             lies = station.tell_object(scene, **pose(at, "--at"))
         else:
             lies = station.reset_object(scene) if reset else station.get_object(scene)
-    if json_:
-        print_json(lies)
-        return
-    print(f"the object of scene {scene} lies at {', '.join(f'{value:.3f}' for value in lies.position)} m")
+    print_answer(
+        lies,
+        f"the object of scene {scene} lies at {', '.join(f'{value:.3f}' for value in lies.position)} m",
+        json_=json_,
+    )
 
 
 def pose(text: str, option: str) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, opened_store, stored_settings
-from teachpath.commands.printing import print_answer, print_columns, print_json
+from teachpath.commands.printing import print_answer, print_columns, print_json, print_list
 from teachpath.errors import UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
 
@@ -62,12 +62,13 @@ def list_(config: Config = None, data: Data = None, json_: Json = False) -> None
     """List the arms that are kept, each in its newest version."""
     with opened_store(stored_settings(config, data)) as store:
         kept = store.arms.newest()
-    if json_:
-        print_json(kept)
-        return
     rows = [(each.arm.name, each.version, len(each.arm.links), each.file, each.hash[:12]) for each in kept]
-    print_columns(
-        ("arm", "version", "joints", "model", "hash"), rows, none="no arms yet; add one with: teachpath arm add"
+    print_list(
+        kept,
+        ("arm", "version", "joints", "model", "hash"),
+        rows,
+        none="no arms yet; add one with: teachpath arm add",
+        json_=json_,
     )
 
 

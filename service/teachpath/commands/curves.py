@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import print_answer, print_columns, print_json
+from teachpath.commands.printing import print_answer, print_list
 from teachpath.commands.references import find_path
 from teachpath.errors import UnusableInput
 
@@ -35,11 +35,8 @@ def list_(path: Path_, url: Url = "", json_: Json = False) -> None:
     """List the versions of a learned path."""
     with connected(url) as station:
         listed = station.versions(find_path(station, path))
-    if json_:
-        print_json(listed)
-        return
     rows = [(v.number, v.name, v.branch, "" if v.parent is None else v.parent, v.author, v.note) for v in listed]
-    print_columns(("version", "name", "branch", "from", "by", "note"), rows, none="")
+    print_list(listed, ("version", "name", "branch", "from", "by", "note"), rows, none="", json_=json_)
 
 
 @app.command("export")
@@ -108,10 +105,7 @@ def compare(
     """Say how far two versions lie apart and which control points were moved."""
     with connected(url) as station:
         difference = station.difference(find_path(station, path), first, second)
-    if json_:
-        print_json(difference)
-    else:
-        print(difference.sentence)
+    print_answer(difference, difference.sentence, json_=json_)
 
 
 def curve_writer(format: str) -> Callable[[Curve], str]:

@@ -140,6 +140,7 @@ class Demo:
             shown = execution_shown(show)
 
             def show_unless_stopped(execution: Execution) -> None:
+                """Show how the execution stands, and resume one that is held."""
                 self._pause(0.0)
                 shown(execution)
                 if execution.status.progress > self._came:

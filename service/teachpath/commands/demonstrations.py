@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import print_json, verdict_word
+from teachpath.commands.printing import print_answer, print_json, verdict_word
 from teachpath.commands.work import Task
 from teachpath.errors import NotFound, UnusableInput
 
@@ -73,10 +73,11 @@ def amend(
             )
         trimmed = _trimmed(found[0], trim) if trim else None
         d = station.amend(found[0].id, mark=MARKS[mark] if mark else None, discarded=discard, trim=trimmed)
-    if json_:
-        print_json(d)
-    else:
-        print(f"{task} {number}: {'; '.join([verdict_word(d.verdict), _said(d) or 'nothing said', *d.reasons])}")
+    print_answer(
+        d,
+        f"{task} {number}: {'; '.join([verdict_word(d.verdict), _said(d) or 'nothing said', *d.reasons])}",
+        json_=json_,
+    )
 
 
 def _trimmed(d: Demonstration, trim: str) -> tuple[int, int]:

@@ -9,7 +9,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Json, settings_of
-from teachpath.commands.printing import print_answer, print_columns, print_json
+from teachpath.commands.printing import print_answer, print_list
 from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.logins import Login, Role, write_logins
@@ -61,10 +61,13 @@ def list_(config: Config = None, json_: Json = False) -> None:
     from teachpath.io.bus_logins import station_logins
 
     rows = [(login.user, login.role.value, login.only) for login in station_logins(settings_of(config, None).bus)]
-    if json_:
-        print_json([{"name": name, "role": role, "only": only} for name, role, only in rows])
-        return
-    print_columns(("name", "role", "only"), rows, none="no logins yet; start the service once")
+    print_list(
+        [{"name": name, "role": role, "only": only} for name, role, only in rows],
+        ("name", "role", "only"),
+        rows,
+        none="no logins yet; start the service once",
+        json_=json_,
+    )
 
 
 @app.command("revoke")

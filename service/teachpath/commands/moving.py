@@ -112,10 +112,7 @@ def stop(
         except (TeachpathError, ClientError) as error:  # the others are told all the same
             failed = failed or error
             continue
-        if json_:
-            print_json(status)
-        else:
-            print(f"stopped: {_at_rest(status)}")
+        print_answer(status, f"stopped: {_at_rest(status)}", json_=json_)
     if failed is not None:
         raise failed
 

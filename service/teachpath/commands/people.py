@@ -12,7 +12,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, opened_store, settings_of
-from teachpath.commands.printing import print_answer, print_columns, print_json
+from teachpath.commands.printing import print_answer, print_list
 from teachpath.commands.tokens import capabilities
 from teachpath.errors import UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
@@ -67,9 +67,6 @@ def list_(config: Config = None, data: Data = None, json_: Json = False) -> None
     with opened_store(settings_of(config, data)) as store:
         sessions = Counter(session.person for session in store.people.sessions())
         known = store.people.all()
-    if json_:
-        print_json([_described(one, sessions[one.name]) for one in known])
-        return
     rows = [
         (
             one.name,
@@ -79,7 +76,13 @@ def list_(config: Config = None, data: Data = None, json_: Json = False) -> None
         )
         for one in known
     ]
-    print_columns(("name", "roles", "added", "sessions"), rows, none="nobody yet: teachpath person add NAME")
+    print_list(
+        [_described(one, sessions[one.name]) for one in known],
+        ("name", "roles", "added", "sessions"),
+        rows,
+        none="nobody yet: teachpath person add NAME",
+        json_=json_,
+    )
 
 
 @app.command("remove")

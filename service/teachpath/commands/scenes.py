@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import moment, print_answer, print_columns, print_json
+from teachpath.commands.printing import moment, print_answer, print_columns, print_json, print_list
 from teachpath.errors import UnusableInput
 
 app = typer.Typer(
@@ -60,11 +60,8 @@ def versions(name: Name, url: Url = "", json_: Json = False) -> None:
     """List the versions of a scene, newest first, of one that was removed too."""
     with connected(url) as station:
         listed = station.scene_versions(name)
-    if json_:
-        print_json(listed)
-        return
     rows = [(each.number, moment(each.created_ns), each.author, "removed" * each.removed, each.note) for each in listed]
-    print_columns(("version", "saved", "by", "", "note"), rows, none="")
+    print_list(listed, ("version", "saved", "by", "", "note"), rows, none="", json_=json_)
 
 
 @app.command("copy")

@@ -154,6 +154,7 @@ def _leave_with_parent(stop: threading.Event, attached: bool) -> None:
     from teachpath.robot.processes import STOP_TIMEOUT
 
     def wait() -> None:
+        """Wait until the parent has ended, and end too."""
         # The parent never writes again: reading returns when its end of the pipe is closed.
         while os.read(sys.stdin.fileno(), 4096):
             continue

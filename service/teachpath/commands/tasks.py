@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import print_json
+from teachpath.commands.printing import print_answer
 from teachpath.commands.work import Task
 
 app = typer.Typer(no_args_is_help=True, help="Delete a task, bring it back, or rename it; `tasks` lists them.")
@@ -18,10 +18,9 @@ def delete(task: Task, url: Url = "", json_: Json = False) -> None:
     """Archive a task: lists leave it out, and nothing is begun with it any more. All of it is kept."""
     with connected(url) as station:
         deleted = station.delete_task(task)
-    if json_:
-        print_json(deleted)
-    else:
-        print(f"task {task} is deleted, and kept; bring it back with: teachpath task restore {task}")
+    print_answer(
+        deleted, f"task {task} is deleted, and kept; bring it back with: teachpath task restore {task}", json_=json_
+    )
 
 
 @app.command()
@@ -29,10 +28,7 @@ def restore(task: Task, url: Url = "", json_: Json = False) -> None:
     """Bring back a task that was deleted, with its demonstrations, runs, paths and plans."""
     with connected(url) as station:
         restored = station.restore_task(task)
-    if json_:
-        print_json(restored)
-    else:
-        print(f"task {task} is back")
+    print_answer(restored, f"task {task} is back", json_=json_)
 
 
 @app.command()
@@ -45,7 +41,4 @@ def rename(
     """Give a task another name; demonstrations, runs, paths, plans and jobs go with it."""
     with connected(url) as station:
         renamed = station.rename_task(task, name)
-    if json_:
-        print_json(renamed)
-    else:
-        print(f"task {task} is called {renamed.name} now")
+    print_answer(renamed, f"task {task} is called {renamed.name} now", json_=json_)

@@ -11,7 +11,7 @@ import typer
 
 from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, opened_store, settings_of
-from teachpath.commands.printing import print_answer, print_columns, print_json
+from teachpath.commands.printing import print_answer, print_list
 from teachpath.errors import UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.tokens import TOKEN_VARIABLE, token_path, write_token
@@ -67,11 +67,14 @@ def list_(config: Config = None, data: Data = None, json_: Json = False) -> None
     """List the tokens, revoked and expired ones too."""
     with opened_store(settings_of(config, data)) as store:
         known = store.access_tokens.all()
-    if json_:
-        print_json([_described(token) for token in known])
-        return
     rows = [(t.name, " ".join(t.roles), _date(t.expires_ns), _date(t.used_ns), _state(t)) for t in known]
-    print_columns(("name", "roles", "expires", "last used", "state"), rows, none="no tokens yet")
+    print_list(
+        [_described(token) for token in known],
+        ("name", "roles", "expires", "last used", "state"),
+        rows,
+        none="no tokens yet",
+        json_=json_,
+    )
 
 
 @app.command("revoke")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from teachpath.commands.options import Json, Url, connected
-from teachpath.commands.printing import print_json, verdict_word
+from teachpath.commands.printing import print_answer, print_json, verdict_word
 from teachpath.commands.progress import job_shown, progress_bar
 from teachpath.commands.references import find_path, find_run
 from teachpath.errors import NotFound
@@ -125,10 +125,7 @@ def plan(
         found = find_path(station, path)
         with progress_bar("planning") as show:
             made = station.plan(found, version, on_change=job_shown(show))
-    if json_:
-        print_json(made)
-    else:
-        print(plan_lines(made))
+    print_answer(made, plan_lines(made), json_=json_)
 
 
 def replay(

@@ -99,6 +99,7 @@ def work(key: str, work: Work, inputs: tuple[Any, ...]) -> Any:
     limit_memory()
 
     def progress(fraction: float, sentence: str) -> None:
+        """Report changes of the sentence, and else at intervals; raises Cancelled."""
         nonlocal reported, due
         if _cancel is not None and _cancel.is_set():
             raise Cancelled("cancelled by the operator")

@@ -173,6 +173,7 @@ def _refused_realtime() -> str:
     said: list[str] = []
 
     def ask() -> None:
+        """Ask for real-time scheduling, and keep why it is refused."""
         try:
             set_fifo(EXECUTOR_PRIORITY)
             said.append("")

@@ -69,6 +69,7 @@ def find_approach(model: CollisionModel, start: Array, settings: MotionSettings)
     to_start = f"on the way{from_home} to the path's start"
 
     def checked(stop: Array) -> Array:
+        """Return a configuration over which the moves are free; raises PathRefused."""
         for a, b, what in ((home, stop, to_start), (stop, start, "above the start")):
             prove_move_clear(
                 model, np.stack([a, b]), settings, load=load, gripper_open=carried is not None, move_name=what
@@ -87,6 +88,7 @@ def find_retreat(model: CollisionModel, start: Array, goal: Array, settings: Mot
     behind = placed_load(model, start, goal)
 
     def checked(stop: Array) -> Array:
+        """Return a configuration over which the moves are free; raises PathRefused."""
         stops = np.stack([goal, stop])
         prove_move_clear(
             model, stops, settings, load=behind, gripper_open=behind is not None, move_name="above the goal"
