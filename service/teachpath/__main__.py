@@ -36,8 +36,8 @@ try:
         tokens,
         work,
     )
-except ModuleNotFoundError as missing:
-    sys.exit(f"teachpath: {missing.name} is not installed; the service needs: pip install 'teachpath[service]'")
+except ModuleNotFoundError as _missing:
+    sys.exit(f"teachpath: {_missing.name} is not installed; the service needs: pip install 'teachpath[service]'")
 
 from teachpath.errors import TeachpathError
 from teachpath_client.errors import ClientError
@@ -47,7 +47,7 @@ EXIT_STATUS = """Exit status: 0, done. 1, refused or failed, with a sentence. 2,
 look: import took rejected demonstrations, or a dry run of doctor found faults that it would mend. 4, a fault is left
 that somebody must see to (doctor, backup). 130, broken off by Ctrl-C."""
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     help="Teach a robot a path by showing it. Start with: teachpath demo. At work: serve; then, on its page or from "
     "other terminals, show the task (teachpath-client), learn, plan and run.",
     epilog=EXIT_STATUS,
@@ -55,7 +55,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for command in (
+for _command in (
     demo.demo,
     station.serve,
     station.worker,
@@ -88,7 +88,7 @@ for command in (
     backups.restore,
     backups.prune,
 ):
-    app.command(name=command.__name__.rstrip("_"))(command)
+    app.command(name=_command.__name__.rstrip("_"))(_command)
 app.add_typer(exporting.app, name="export")
 app.add_typer(tasks.app, name="task")
 app.add_typer(curves.app, name="curve")
@@ -101,8 +101,8 @@ app.add_typer(audit.app, name="audit")
 app.add_typer(tls.app, name="tls")
 app.add_typer(tokens.app, name="token")
 app.add_typer(people.app, name="person")
-for part in (station.executor, station.simulator):
-    app.command(rich_help_panel="Parts that serve starts by itself")(part)
+for _part in (station.executor, station.simulator):
+    app.command(rich_help_panel="Parts that serve starts by itself")(_part)
 
 
 def _print_version(wanted: bool) -> None:

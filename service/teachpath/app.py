@@ -8,7 +8,6 @@ from contextlib import ExitStack
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 from fastapi import FastAPI
@@ -29,6 +28,7 @@ from teachpath.io.bus import Bus, listen_on_bus
 from teachpath.io.bus_logins import prepare_access
 from teachpath.io.signing_key import prepare_signing_key
 from teachpath.io.store.changes import EVERYTHING
+from teachpath.io.store.store import Store
 from teachpath.io.wire import recording_document
 from teachpath.job_kinds import JobKinds
 from teachpath.jobs.curve_assessor import CurveAssessor
@@ -62,7 +62,7 @@ from teachpath.robot.processes import EXECUTOR_SUGGESTION, SIMULATOR_SUGGESTION,
 from teachpath.robot.programs import Programs
 from teachpath.robot.scenes import Scenes
 from teachpath.stored_arm import open_store
-from teachpath.web.certificate import find_certificate
+from teachpath.web.certificate import WebCertificate, find_certificate
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
 
@@ -81,19 +81,21 @@ class Station:
     def __init__(self, settings: Settings) -> None:
         self._provider = open_provider(settings.auth.mode, settings.oidc)
         self._lock = StationLock(Path(settings.store.data_dir))
-        self.event_hub = EventHub()
+        self.event_hub: EventHub = EventHub()
         with ExitStack() as on_failure:
             on_failure.enter_context(self._lock)
-            self.store, self.settings = open_store(settings, self._on_change)
+            store, settings = open_store(settings, self._on_change)
+            self.store: Store = store
+            self.settings: Settings = settings
             on_failure.callback(self.store.close)
-            self.certificate = find_certificate(settings.web, settings.store.data_dir)
+            self.certificate: WebCertificate | None = find_certificate(settings.web, settings.store.data_dir)
             self._authority = bool(self.certificate and self.certificate.authority)
             self._signing_key = SigningKey(prepare_signing_key(settings.bus.endpoint))
             self._access = prepare_access(settings.bus)
             with realtime_threads():
                 self.bus: Bus = listen_on_bus(settings.bus, self._access)
             on_failure.pop_all()
-        self.keys = Keys(settings.bus.prefix)
+        self.keys: Keys = Keys(settings.bus.prefix)
         self._started = time.monotonic()
         self._open_recording()
         self._open_work()
@@ -116,9 +118,7 @@ class Station:
             raise
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._state_poller.stop()
         self.access.stop()
         self.processes[0].request_stop()
@@ -135,18 +135,18 @@ class Station:
         """Open what knows where the objects lie, and all that records."""
         settings = self.settings
         self.store.services.begin()
-        self.audit = Audit(AuditLog(Path(settings.store.data_dir)))
-        tokens, people = self.store.access_tokens, self.store.people
-        self.access = Access(settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider)
-        self.reader = LimitedProcess(settings.jobs)
-        self.scenes = Scenes(self.store.scenes, settings.scenes)
-        scene, call = self.scenes.get, self.reader.call
-        self.calibrations = Calibrations(self.store, settings.recording, settings.calibrations, scene, call)
-        self.executions = Executions(self.bus, self.keys, self.store, self.audit.note_journal, robot=settings.bus.robot)
-        self.objects = ObjectPoses(
+        self.audit: Audit = Audit(AuditLog(Path(settings.store.data_dir)))
+        store, tokens, people = self.store, self.store.access_tokens, self.store.people
+        self.access: Access = Access(settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider)
+        self.reader: LimitedProcess = LimitedProcess(settings.jobs)
+        self.scenes: Scenes = Scenes(self.store.scenes, settings.scenes)
+        scene, call, note = self.scenes.get, self.reader.call, self.audit.note_journal
+        self.calibrations: Calibrations = Calibrations(store, settings.recording, settings.calibrations, scene, call)
+        self.executions: Executions = Executions(self.bus, self.keys, store, note, robot=settings.bus.robot)
+        self.objects: ObjectPoses = ObjectPoses(
             self.bus, self.keys, scene, self.executions.is_moving, lambda scene: self._shown.show_scene()
         )
-        self.recorder = Recorder(
+        self.recorder: Recorder = Recorder(
             self.bus,
             self.keys,
             self.store,
@@ -159,8 +159,8 @@ class Station:
             call=call,
         )
         self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
-        self.guidance = GuidanceThread(self.store.demonstrations, self._course, settings.learning, self.reader.call)
-        self.websocket_trackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
+        self.guidance: GuidanceThread = GuidanceThread(store.demonstrations, self._course, settings.learning, call)
+        self.websocket_trackers: WebSocketTrackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
         self._shown = ShownTask(
             self.store,
             self.objects.scene,
@@ -172,25 +172,26 @@ class Station:
     def _open_work(self) -> None:
         """Open what learns, plans and looks at curves."""
         settings, store, scenes, show = self.settings, self.store, self.scenes, self._shown.show
-        self.assessor = CurveAssessor()
-        self.transfers = TransferFolders(Path(settings.store.data_dir) / TRANSFERS)
+        self.assessor: CurveAssessor = CurveAssessor()
+        self.transfers: TransferFolders = TransferFolders(Path(settings.store.data_dir) / TRANSFERS)
         kinds = JobKinds(
             store, settings, self.calibrations, self.transfers, show, self._signing_key, scenes, self.objects
         ).by_name()
-        self.jobs = Jobs(self.bus, self.keys, store, settings.jobs, kinds, on_finished=self.assessor.on_finished)
-        self.exporter = Exporter(ExportSource(settings.store, settings.recording, settings.scenes), settings.jobs)
+        self.jobs: Jobs = Jobs(self.bus, self.keys, store, settings.jobs, kinds, on_finished=self.assessor.on_finished)
+        source = ExportSource(settings.store, settings.recording, settings.scenes)
+        self.exporter: Exporter = Exporter(source, settings.jobs)
 
     def _open_robot(self) -> None:
         """Open the service's side of the arm, its picture, and the processes that move it."""
         settings, robot, store = self.settings, self.settings.bus.robot, self.store
-        self.joints = JointFeed(self.bus, self.keys, robot=robot)
-        self.certificate_status = CertificateStatus(
+        self.joints: JointFeed = JointFeed(self.bus, self.keys, robot=robot)
+        self.certificate_status: CertificateStatus = CertificateStatus(
             self.bus, self.keys, store, scene=self.objects.scene, calibration=self.calibrations.newest_numbered
         )
-        self.programs = Programs(
+        self.programs: Programs = Programs(
             store, self._signing_key, settings.motion, settings.arm, self.executions, self.reader.call, time.time_ns
         )
-        self.preview = Preview(
+        self.preview: Preview = Preview(
             self.bus,
             self.keys,
             visual_solids(settings.arm),
@@ -202,7 +203,8 @@ class Station:
         )
         # In the order in which they are stopped: the executor brings the arm to rest.
         key, on_death = self._signing_key.secret, self.executions.end_lost
-        self.processes = [self._process("executor", Role.EXECUTOR, EXECUTOR_SUGGESTION, on_death, key=key)]
+        executor = self._process("executor", Role.EXECUTOR, EXECUTOR_SUGGESTION, on_death, key=key)
+        self.processes: list[SupervisedProcess] = [executor]
         if settings.simulator.start:
             self.processes.append(self._process("simulator", Role.ROBOT, SIMULATOR_SUGGESTION))
 

@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, is_dataclass, replace
 from pathlib import Path
-from typing import Any, get_args, get_type_hints
+from typing import Any, ClassVar, get_args, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError
 
@@ -54,7 +54,7 @@ ROBOTTASKS = Calibration("robottasks", scale=0.8, rotation=(1.0, 0.0, 0.0, 0.0),
 class Settings(BaseModel):
     """Every setting of a station."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config: ClassVar[ConfigDict] = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     bus: BusSettings = BusSettings()
     web: WebSettings = WebSettings()

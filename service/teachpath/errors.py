@@ -48,7 +48,7 @@ class UnusableSample(UnusableInput):
 
     def __init__(self, message: str, *, sequence: int | None = None) -> None:
         super().__init__(message)
-        self.sequence = sequence
+        self.sequence: int | None = sequence
 
 
 class UnusableRecording(UnusableInput):
@@ -64,7 +64,7 @@ class LearningFailed(TeachpathError):
 
     def __init__(self, sentence: str, demonstration: str = "") -> None:
         super().__init__(sentence)
-        self.demonstration = demonstration
+        self.demonstration: str = demonstration
 
 
 class PathRefused(TeachpathError):
@@ -72,7 +72,7 @@ class PathRefused(TeachpathError):
 
     def __init__(self, sentence: str, failure: Any = None) -> None:
         super().__init__(sentence)
-        self.failure = failure
+        self.failure: Any = failure
 
 
 class NotFound(TeachpathError):
@@ -88,7 +88,7 @@ class Outdated(Conflict):
 
     def __init__(self, sentence: str, newer: object) -> None:
         super().__init__(sentence)
-        self.newer = newer
+        self.newer: object = newer
 
 
 class Cancelled(Conflict):
@@ -118,7 +118,7 @@ class TooManyRequests(TeachpathError):
 
     def __init__(self, sentence: str, wait: float) -> None:
         super().__init__(sentence)
-        self.wait = wait
+        self.wait: float = wait
 
 
 class TooManyAttempts(TooManyRequests):

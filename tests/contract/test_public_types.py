@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("clients/teachpath_client", "proto/teachpath_proto")
+PACKAGES = ("clients/teachpath_client", "proto/teachpath_proto", "service/teachpath")
 MODULES = [
     file for package in PACKAGES for file in sorted((ROOT / package).rglob("*.py")) if not file.name.endswith("_pb2.py")
 ]

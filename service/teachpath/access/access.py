@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
-from typing import Final, Protocol
+from typing import Final, Literal, Protocol
 
 from teachpath.access.provider_sign_in import Provider, ProviderSignIn
 from teachpath.access.sessions import PeopleTable, Sessions
@@ -60,7 +60,7 @@ class Access:
         oidc: OidcSettings | None = None,
         provider: Provider | None = None,
     ) -> None:
-        self.mode = settings.mode
+        self.mode: Literal["none", "token", "oidc", "proxy"] = settings.mode
         self.sessions: Sessions = Sessions(settings, people, now_ns, oidc.issuer if oidc and provider else "")
         self.provider: ProviderSignIn | None = None
         if oidc and provider:

@@ -40,7 +40,8 @@ class Audit:
     """
 
     def __init__(self, log: Log, clock: Callable[[], float] = time.monotonic) -> None:
-        self.log, self._clock = log, clock
+        self._clock = clock
+        self.log: Log = log
         self._waiting: queue.Queue[Happening | None] = queue.Queue(MAX_WAITING)
         self._lost = 0
         self._fault = ""

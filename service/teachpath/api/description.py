@@ -47,8 +47,8 @@ PATH_PARAMETERS: Final = {
     "verb": "what the arm does on its path",
 }
 ALWAYS_ANSWERED: Final = {"stop_execution", "stop_arm"}  # whatever comes with the request
-LINK: Final = {"Link": {"description": "the next page, rel=next", "schema": {"type": "string"}}}
-HEADERS_OF_REFUSALS: Final = {
+LINK: Final[dict[str, Any]] = {"Link": {"description": "the next page, rel=next", "schema": {"type": "string"}}}
+HEADERS_OF_REFUSALS: Final[dict[str, Any]] = {
     "401": {"WWW-Authenticate": {"description": "how to say who one is", "schema": {"type": "string"}}},
     "429": {"Retry-After": {"description": "seconds after which to try again", "schema": {"type": "integer"}}},
 }

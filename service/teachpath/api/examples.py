@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from teachpath.api.schemas import REFERENCE, Schema
 
-CURVE: Final = {
+CURVE: Final[Schema] = {
     "degree": 3,
     "knots": [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0],
     "control_points": [[0.58, -0.28, 0.52], [0.6, -0.1, 0.7], [0.55, 0.1, 0.7], [0.5, 0.3, 0.52]],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
@@ -25,7 +25,7 @@ from teachpath.offline.track_samples import PhaseMarks
 from teachpath.records import Job
 from teachpath_proto.keys import is_name, name_refusal
 
-FILE_BODY: Final = {
+FILE_BODY: Final[dict[str, Any]] = {
     "required": True,
     "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
 }

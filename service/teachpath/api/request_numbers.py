@@ -22,7 +22,7 @@ OF_API: Final = {
 }
 ROUTINE: Final = ("/lease/beat",)  # ends of the paths of what programs send all the time
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 
 class RequestNumbers:

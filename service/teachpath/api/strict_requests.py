@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Annotated, Any, Final, get_args
+from typing import Annotated, Any, ClassVar, Final, get_args
 
 from fastapi import Request
 from fastapi.exceptions import RequestValidationError
@@ -26,7 +26,7 @@ class Body(BaseModel):
     within it is strict all the same.
     """
 
-    model_config = ConfigDict(extra="forbid", strict=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(extra="forbid", strict=True)
 
 
 Roles = list[Annotated[Capability, Strict(False)]]

@@ -35,7 +35,11 @@ SILENCE_TIMEOUT: Final = 10.0  # [s] after which a page that says nothing, not e
 MAX_SESSION_LENGTH: Final = 64  # characters of the secret by which a page comes back
 MAX_PING: Final = 1e18  # what is no number, or infinite, could not be answered in JSON
 
-FIELDS_OF_KIND: Final = {"sample": ("sample",), "ping": ("ping",), "end": ("end", "discard")}  # of each kind of message
+FIELDS_OF_KIND: Final[dict[str, tuple[str, ...]]] = {
+    "sample": ("sample",),
+    "ping": ("ping",),
+    "end": ("end", "discard"),
+}  # of each kind of message
 
 Answer = dict[str, Any]
 

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from teachpath.records import Pose, RevoluteJoint, SerialArm
     from teachpath.records.serial_arms import JointLimit
 
-app = typer.Typer(help="Arms from models in URDF and MJCF: add, list, check (docs/arms.md).", no_args_is_help=True)
+app: typer.Typer = typer.Typer(
+    help="Arms from models in URDF and MJCF: add, list, check (docs/arms.md).", no_args_is_help=True
+)
 
 Tool = Annotated[
     str, typer.Option(help="Name of the body or site that is the tool, or its pose to the last link, as --base.")

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from teachpath.config import Settings
     from teachpath.io.audit_log import AuditLog
 
-app = typer.Typer(help="Who did what at the station: verify and export the audit log.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(
+    help="Who did what at the station: verify and export the audit log.", no_args_is_help=True
+)
 
 
 @app.command("verify")

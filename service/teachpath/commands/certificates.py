@@ -17,7 +17,7 @@ from teachpath_proto.logins import Login, Role, write_logins
 if TYPE_CHECKING:
     from teachpath.io.bus_settings import BusSettings
 
-app = typer.Typer(help="A bus over several machines: its certificates, its router.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(help="A bus over several machines: its certificates, its router.", no_args_is_help=True)
 Host = Annotated[
     list[str] | None,
     typer.Option("--host", help="Further address or name at which the service or router listens; repeatable."),

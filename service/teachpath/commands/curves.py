@@ -24,7 +24,7 @@ MAX_FILE_SIZE = 1024 * 1024  # bytes of a file with one curve
 
 FORMATS: Final = ("json", "dxf", "iges")
 
-app = typer.Typer(help="Versions of a learned path: list, export, import, compare.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(help="Versions of a learned path: list, export, import, compare.", no_args_is_help=True)
 
 Path_ = Annotated[str, typer.Argument(metavar="PATH", help="TASK/CLUSTER, or an id or its beginning.")]
 Number = Annotated[int | None, typer.Option(help="Its version; without it the newest on the main branch.")]

@@ -19,7 +19,7 @@ from teachpath.errors import UnusableInput
 if TYPE_CHECKING:
     from teachpath.config import Settings
 
-app = typer.Typer(help="Write demonstrations, review packages and motions to files.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(help="Write demonstrations, review packages and motions to files.", no_args_is_help=True)
 
 Into = Annotated[Path, typer.Option(help="Folder to write into; made when missing.")]
 Out = Annotated[Path, typer.Option("-o", "--out", help="File to write; never one that is there already.")]

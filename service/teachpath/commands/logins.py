@@ -14,7 +14,7 @@ from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.logins import Login, Role, write_logins
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     help="Logins on the bus: create, list, revoke. This user's own programs need none: they find theirs themselves.",
     no_args_is_help=True,
 )

@@ -20,7 +20,9 @@ from teachpath_proto.keys import is_name, name_refusal
 if TYPE_CHECKING:
     from teachpath.records import Person
 
-app = typer.Typer(help="People who sign in on the page: add, list, password, remove.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(
+    help="People who sign in on the page: add, list, password, remove.", no_args_is_help=True
+)
 Name = Annotated[str, typer.Argument(help="Under which the person signs in; the journal has it.")]
 
 

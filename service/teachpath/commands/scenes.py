@@ -14,7 +14,7 @@ from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import moment, print_answer, print_columns, print_json, print_list
 from teachpath.errors import UnusableInput
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     help="Scenes of a running station: add, show, versions, copy, remove, restore (docs/scenes.md); "
     "teachpath scenes lists them.",
     no_args_is_help=True,

@@ -21,7 +21,7 @@ from teachpath_proto.logins import Role
 if TYPE_CHECKING:
     from teachpath.instructions import Instructions
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 PARTS = {Role.EXECUTOR: "executor", Role.ROBOT: "simulator"}  # names of the processes in the log
 

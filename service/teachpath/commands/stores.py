@@ -11,7 +11,7 @@ from teachpath.commands.audit import note
 from teachpath.commands.options import Json
 from teachpath.commands.printing import print_answer
 
-app = typer.Typer(help="The database of a station.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(help="The database of a station.", no_args_is_help=True)
 
 
 @app.callback()

@@ -10,7 +10,9 @@ from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import print_answer
 from teachpath.commands.work import Task
 
-app = typer.Typer(no_args_is_help=True, help="Delete a task, bring it back, or rename it; `tasks` lists them.")
+app: typer.Typer = typer.Typer(
+    no_args_is_help=True, help="Delete a task, bring it back, or rename it; `tasks` lists them."
+)
 
 
 @app.command()

@@ -19,7 +19,7 @@ from teachpath.errors import UnusableInput
 if TYPE_CHECKING:
     from teachpath.web.settings import WebSettings
 
-app = typer.Typer(help="https for page and REST: make or renew the certificate.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(help="https for page and REST: make or renew the certificate.", no_args_is_help=True)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 UNSPECIFIED = ("0.0.0.0", "::", "")
 

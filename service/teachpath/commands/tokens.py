@@ -19,7 +19,9 @@ from teachpath_proto.tokens import TOKEN_VARIABLE, token_path, write_token
 if TYPE_CHECKING:
     from teachpath.records import AccessToken, Capability
 
-app = typer.Typer(help="Tokens of programs: create, list, revoke; for auth.mode token.", no_args_is_help=True)
+app: typer.Typer = typer.Typer(
+    help="Tokens of programs: create, list, revoke; for auth.mode token.", no_args_is_help=True
+)
 
 
 @app.command("create")

@@ -23,8 +23,8 @@ class ArmRest:
         self._max_speed = max_speed
         self._timeout_ns = round(timeout * 1e9)
         self._since: int | None = None  # when the nominal motion was first seen at rest [ns]
-        self.is_reached = False
-        self.problem = ""
+        self.is_reached: bool = False
+        self.problem: str = ""
 
     def begin_again(self) -> None:
         """Take note that the nominal motion is not at rest."""

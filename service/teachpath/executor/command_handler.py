@@ -32,7 +32,7 @@ from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from teachpath_proto.keys import Keys
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 DEFAULT_OPERATOR: Final = "somebody"  # name of a person who commands without a lease and without a name
 MAX_WAITING_STOPS: Final = 1000  # stops that were put and not obeyed yet
@@ -85,8 +85,8 @@ class CommandHandler:
         self._stop_count = 0
         self._received_stops: deque[bytes] = deque(maxlen=MAX_WAITING_STOPS)
         self._known_stops: deque[str] = deque(maxlen=KNOWN_STOPS)
-        self.status_is_due = False
-        self.lease = ControlLease(time_source.monotonic_ns)
+        self.status_is_due: bool = False
+        self.lease: ControlLease = ControlLease(time_source.monotonic_ns)
         self.current: Execution | None = None
         self.pending: deque[Callable[[Execution], None]] = deque()
 

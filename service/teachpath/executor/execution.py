@@ -59,17 +59,17 @@ class Execution:
         arm: Arm,
         arm_rest: ArmRest,
     ) -> None:
-        self.id = execution
-        self.program = program
-        self.plan = plan
-        self.confirm = confirm
-        self.grasp = grasp
-        self.state = ExecutorState.APPROACHING
-        self.reason = ""
-        self.tracking_error = 0.0
-        self.revocation = ""
-        self.displacement = 0.0
-        self.arm_stops = False
+        self.id: str = execution
+        self.program: MotionProgram = program
+        self.plan: str = plan
+        self.confirm: Callable[[], None] = confirm
+        self.grasp: GraspMonitor = grasp
+        self.state: ExecutorState = ExecutorState.APPROACHING
+        self.reason: str = ""
+        self.tracking_error: float = 0.0
+        self.revocation: str = ""
+        self.displacement: float = 0.0
+        self.arm_stops: bool = False
         self._rate = rate
         self._arm = arm
         self._arm_rest = arm_rest

@@ -28,7 +28,7 @@ class GraspMonitor:
     """
 
     def __init__(self, name: str = "", width: float = 0.0) -> None:
-        self.name = name
+        self.name: str = name
         self._width = width
         self._empty_since: int | None = None  # [ns]
         self._was_reported = False  # that it is empty now

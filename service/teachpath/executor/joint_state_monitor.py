@@ -13,7 +13,7 @@ from teachpath.errors import Conflict, Unreachable, UnusableInput
 from teachpath.io import wire
 from teachpath.records import Array, JointState
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 REFUSAL_INTERVAL_NS: Final = 1_000_000_000  # [ns] between two words in the log about states that cannot be used
 MAX_LISTENED_NS: Final = 50_000_000  # [ns] of silence that one look counts at most: who oversleeps hears nothing
@@ -36,7 +36,7 @@ class JointStateMonitor:
     """
 
     def __init__(self, robot: str, silence: float, clock: Callable[[], int]) -> None:
-        self.robot = robot
+        self.robot: str = robot
         self._silence = silence
         self._clock = clock
         self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
@@ -44,8 +44,8 @@ class JointStateMonitor:
         self._looked_ns = clock()
         self._refused_ns = -REFUSAL_INTERVAL_NS  # when a joint state was last said to be refused
         self._lost_ns = -1  # when its driver left: what came before is no state of the next one
-        self.has_lost_driver = False
-        self.listened_ns = 0
+        self.has_lost_driver: bool = False
+        self.listened_ns: int = 0
 
     def on_liveliness(self, _: str, alive: bool) -> None:
         """Take note of a driver that comes or goes."""

@@ -34,7 +34,7 @@ from teachpath.time_source import TimeSource
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods in one cycle of the loop while no execution is under way
 UNASKED_MOTION: Final = "unasked motion"  # in the journal, where verbs of commands stand

@@ -42,7 +42,9 @@ class Pacer:
 
     def reset(self) -> None:
         """Begin the statistics anew."""
-        self.cycles = self.late = self.missed = 0
+        self.cycles: int = 0
+        self.late: int = 0
+        self.missed: int = 0
         self._largest = 0.0
         self._counts = np.zeros(MAX_COUNTED_LATENESS_US + 1, dtype=np.int64)  # one bin a microsecond
 

@@ -74,7 +74,7 @@ class ProgramFactory:
         self._keys = keys
         self._settings = settings
         self._motion = motion
-        self.arm = arm
+        self.arm: Arm = arm
         self._joint_states = joint_states
         self._time = time_source
         self._certificates = certificates

@@ -29,7 +29,7 @@ class UnaskedMotionDetector:
     """
 
     def __init__(self, threshold: float, silence: float) -> None:
-        self.reason = ""
+        self.reason: str = ""
         self._threshold = threshold
         self._silence = silence
         self._lock = threading.Lock()

@@ -18,7 +18,7 @@ from teachpath.jobs.settings import LOCAL
 if TYPE_CHECKING:  # of an extra
     from distributed import Client, Future
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 CONNECT_TIMEOUT: Final = 5.0  # [s]
 ANSWER_TIMEOUT: Final = 10.0  # [s] in which scheduler and workers answer questions
@@ -47,7 +47,7 @@ class Sent:
     """An order that was sent: its name, its outcome, and the addresses of the workers that may do it."""
 
     order: str
-    future: Future
+    future: Future[Any]
     workers: frozenset[str]
 
 
@@ -61,7 +61,8 @@ class Cluster:
     """
 
     def __init__(self, address: str, progress: Reports, versions: Mapping[str, str] | None = None) -> None:
-        self.address, self._progress, self._versions = address, progress, versions
+        self._progress, self._versions = progress, versions
+        self.address: str = address
         self._lock = threading.Lock()
         self._client: Client | None = None
         self._refused: set[str] = set()  # sentences about workers that were logged

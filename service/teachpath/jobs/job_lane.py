@@ -10,7 +10,7 @@ from typing import Any
 
 from teachpath.jobs.executors import JobExecutor, Work
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 Orders = queue.SimpleQueue[str | None]
 
@@ -28,10 +28,11 @@ class JobLane:
     def __init__(
         self, name: str, executor: JobExecutor, process: Callable[[JobLane, str], None], orders: Orders
     ) -> None:
-        self.name, self._executor, self._process, self._orders = name, executor, process, orders
+        self._executor, self._process, self._orders = executor, process, orders
+        self.name: str = name
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"jobs: {name}", daemon=True)
-        self.running = ""
+        self.running: str = ""
 
     def start(self) -> None:
         """Begin to work."""

@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # the settings of jobs are read in processes that have no sto
     from teachpath.io.bus import Bus
     from teachpath.io.store.store import Store
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 LOG_PART: Final = "worker"  # of the station, in the log: the service tells what its working processes do
 STORE_INTERVAL: Final = 1.0  # [s] after which a job is tried again that the store could not take

@@ -21,6 +21,7 @@ class ProcessLog:
     """
 
     def __init__(self, part: str) -> None:
+        self.writer: Connection
         self._lines, self.writer = Pipe(duplex=False)
         threading.Thread(target=self._pass_on, name=f"log of {part}", daemon=True).start()
 

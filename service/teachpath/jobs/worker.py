@@ -29,7 +29,7 @@ from teachpath.motion.planning.signature import CalibrationScope, SigningKey, si
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 Progress = Callable[[float, str], None]
 

@@ -23,7 +23,7 @@ class Event:
     """One event, the same object for every subscriber."""
 
     def __init__(self, document: Document) -> None:
-        self.document = document
+        self.document: Document = document
 
     @cached_property
     def text(self) -> str:
@@ -35,7 +35,7 @@ class Subscriber:
     """The events that one subscriber has not received yet: of each topic and id, the newest."""
 
     def __init__(self, wake: Callable[[], None], first: Event, states: dict[Key, Event]) -> None:
-        self.wake = wake
+        self.wake: Callable[[], None] = wake
         self._lock = threading.Lock()
         self._changes: dict[Key, Event] = {(RESYNC_TOPIC, ""): first}
         self._states = dict(states)

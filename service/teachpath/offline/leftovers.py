@@ -13,7 +13,7 @@ from teachpath.io.store.faults import TEMPORARY
 from teachpath.io.store.motions import MENDING
 from teachpath.io.store.store import Store
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 REPAIRS: Final = "repairs"  # folder in which the doctor makes recordings
 TRANSFERS: Final = "transfers"  # folder of uploads and exports

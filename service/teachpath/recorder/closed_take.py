@@ -17,7 +17,7 @@ from teachpath.records import ObjectPose, StreamStatistics, Vector
 
 MAX_WAITING = 16  # takes of one recording; while more wait, its samples stay in their queue, which is limited
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 
 @dataclass(frozen=True, eq=False)

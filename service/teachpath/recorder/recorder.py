@@ -40,7 +40,7 @@ from teachpath_proto.keys import Keys
 
 MAX_SHOWN_HANDS = 32  # more would hide each other
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class Recorder:
         self._lookup = lookup
         self._callbacks = callbacks or DemonstrationCallbacks()
         self._clock = clock
-        self.owners = TrackerOwners(keys, clock)
+        self.owners: TrackerOwners = TrackerOwners(keys, clock)
         self._presence = Presence(clock)
         self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
         self._recording = RecordingThread(
@@ -114,7 +114,7 @@ class Recorder:
             on_discard_request=self._discard_last_of,
             clock=clock,
         )
-        self.annotations = Annotations(
+        self.annotations: Annotations = Annotations(
             store, settings, lookup.scene, self._callbacks.changed, call, self._recording.wait_for_takes
         )
         self._feedback = FeedbackPublisher(bus, keys, self.statuses, store.demonstration, clock=clock)

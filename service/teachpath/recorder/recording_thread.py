@@ -60,8 +60,8 @@ class RecordingThread:
         self._on_discard_request = on_discard_request
         self._clock = clock
         self.sessions: dict[str, RecordingSession] = {}
-        self.condition = threading.Condition()
-        self.beginning = threading.Lock()
+        self.condition: threading.Condition = threading.Condition()
+        self.beginning: threading.Lock = threading.Lock()
         self._completing = ThreadPoolExecutor(COMPLETING_THREADS, thread_name_prefix="takes")
         self._take_queues: WeakSet[TakeQueue] = WeakSet()  # of ended recordings too, while their takes are completed
         self._next_turn = 0  # of the running recordings, whose turn it is in the next round

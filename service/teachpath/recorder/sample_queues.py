@@ -39,7 +39,7 @@ class SampleQueues:
     def __init__(self, keys: Keys, presence: Presence, max_length: int) -> None:
         self._keys = keys
         self._presence = presence
-        self.max_length = max_length
+        self.max_length: int = max_length
         self._queues: dict[str, _Queue] = {}  # by the key of the samples
         self._invalid_name_count = 0
         self._last_invalid_name = ""

@@ -46,19 +46,19 @@ class RecordingSession:
         completer: Completer | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.completer = completer or DirectCompleter()
-        self._store = store
-        self._settings = settings
-        self._setup = setup
+        self.completer: Completer | DirectCompleter = completer or DirectCompleter()
+        self._store, self._settings, self._setup = store, settings, setup
         self._clock = clock
         # Its current interval is that of the open take.
-        self.counter = StreamCounter(declared_rate=setup.rate, largest_clock_step=settings.largest_clock_step)
+        self.counter: StreamCounter = StreamCounter(
+            declared_rate=setup.rate, largest_clock_step=settings.largest_clock_step
+        )
         self._state_machine = RecordingStateMachine(setup.routine, clock(), countdown=settings.countdown)
         self._object = ObjectPlace(setup.scene.carried, setup.reported_object, at_grasp=setup.object_at_grasp)
         self._order = ReversedOrder()
         self._to_world = point_to_world(setup.calibration)
         self.demonstrations: list[str] = []
-        self.last_flush = clock()
+        self.last_flush: float = clock()
         self._idle = 0
         self._is_torn = False
         self._pedal_used = False

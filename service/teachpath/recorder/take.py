@@ -58,10 +58,10 @@ class Take:
         self._settings = settings
         self._header = header
         self._note = note
-        self.samples = SampleRows()
+        self.samples: SampleRows = SampleRows()
         self._first: Sample | None = None
         self._last: Sample | None = None
-        self.fault = ""
+        self.fault: str = ""
         self._id = new_id()
         self._file: RecordingFile | None = None
 

@@ -112,10 +112,10 @@ class WebSocketTracker:
         clock: Callable[[], float],
         session: str,
     ) -> None:
-        self.name = name
-        self.session = session
-        self.accepted = 0
-        self.refused = 0
+        self.name: str = name
+        self.session: str = session
+        self.accepted: int = 0
+        self.refused: int = 0
         self._bus = bus
         self._recorder = recorder
         self._clock = clock

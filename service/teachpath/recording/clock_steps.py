@@ -26,10 +26,10 @@ class ClockSteps:
     def __init__(self, declared_rate: float, largest_step: float) -> None:
         self._declared_rate = declared_rate
         self._limit_ns = round(largest_step * 1e9)
-        self.clock_jumps = 0
-        self.steps = 0
-        self.device_ns = 0
-        self.step_ns = 0
+        self.clock_jumps: int = 0
+        self.steps: int = 0
+        self.device_ns: int = 0
+        self.step_ns: int = 0
         self._receive_ns = 0
         self._stalled_ns = 0.0
         self._last: Sample | None = None

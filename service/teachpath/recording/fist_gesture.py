@@ -25,7 +25,8 @@ class FistGesture:
     """
 
     def __init__(self, settings: RecordingSettings, carried: Vector | None) -> None:
-        self._settings, self.carried = settings, carried
+        self._settings = settings
+        self.carried: Vector | None = carried
         self._began: int | None = None  # device clock [ns]
         self._place: Vector = (0.0, 0.0, 0.0)
         self._opened: int | None = None  # device clock [ns] of its opening, while that may still be a flicker

@@ -43,8 +43,8 @@ class IntervalMessages:
 
     def __init__(self, rest: str) -> None:
         self._rest = rest
-        self.all = MessageCounter(rest)
-        self.interval = MessageCounter(rest)
+        self.all: MessageCounter = MessageCounter(rest)
+        self.interval: MessageCounter = MessageCounter(rest)
 
     def add(self, sentence: str, *, in_interval: bool = True) -> None:
         """Count one message; with `in_interval` it is of the current interval too."""

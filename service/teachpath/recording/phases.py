@@ -53,20 +53,21 @@ class Segmenter:
                 object lies elsewhere.
             closed: the hand may be closed already; it must open before it can grasp.
         """
-        self._settings, self.carried = settings, carried
+        self._settings = settings
+        self.carried: Vector | None = carried
         self._closed = closed
         self._release_ns = round(settings.release_time * 1e9)
         self._rest_ns = round(settings.rest_time * 1e9)
         self._restart()
 
     def _restart(self) -> None:
-        self.phase = Phase.REACH
+        self.phase: Phase = Phase.REACH
         self._count = 0
         self._grasp = self._release = 0
         self._opened_ns = 0
         self._place: Vector = (0.0, 0.0, 0.0)  # where the hand closed
         self._half_closed_ns = 0  # since when it is neither open nor closed at the object; 0: it is not
-        self.hint = ""  # why the hand has grasped nothing, and what to do
+        self.hint: str = ""  # why the hand has grasped nothing, and what to do
         self._recent: deque[tuple[int, Vector]] = deque()
 
     @property

@@ -22,7 +22,7 @@ class ReversedOrder:
     """
 
     def __init__(self) -> None:
-        self.hint = ""
+        self.hint: str = ""
         self._last: Sample | None = None
         self._count = 0
         self._since_ns = 0

@@ -17,7 +17,7 @@ class RecordingStateMachine:
         self._countdown = countdown if routine.countdown is None else routine.countdown
         self._begins_at = 0.0  # the take, while it is counted down
         self._made = 0
-        self.state = RecordingState.PAUSED
+        self.state: RecordingState = RecordingState.PAUSED
         if not routine.armed:
             self._arm(now)
 

@@ -36,7 +36,7 @@ class StreamCounter:
 
     def __init__(self, *, declared_rate: float = 0.0, largest_clock_step: float = 0.1) -> None:
         self.first: int | None = None
-        self.highest = -1
+        self.highest: int = -1
         self._declared_rate = declared_rate
         self._gaps = SequenceGaps()
         self._counts = dict.fromkeys(COUNTED, 0)

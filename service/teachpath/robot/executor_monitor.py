@@ -49,7 +49,7 @@ class ExecutorMonitor:
         self._store = store
         self._on_status = on_status
         self._on_entry = on_entry
-        self.unacknowledged = ""
+        self.unacknowledged: str = ""
         self._lock = threading.Lock()
         self._latest: ExecutorStatus | None = None
         self._received_at = -SILENCE_TIMEOUT  # [s, monotonic]

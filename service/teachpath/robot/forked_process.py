@@ -51,7 +51,7 @@ class ForkedProcess:
                 self._input.close()
                 raise
             self.pid: int = self._popen.pid
-            self.errors = os.dup(errors.fileno())
+            self.errors: int = os.dup(errors.fileno())
         self._has_ended = False
 
     def is_alive(self) -> bool:

@@ -23,7 +23,7 @@ class LastError:
     """
 
     def __init__(self) -> None:
-        self.text = ""
+        self.text: str = ""
         self._in_traceback = False
         self._is_certain = False  # an exception or a logged error was found
 

@@ -17,7 +17,7 @@ from teachpath.io.wire import decode_setpoint, decode_status, without_way_to_res
 from teachpath.periodic_thread import PeriodicThread
 from teachpath_proto.keys import Keys
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 POLL_INTERVAL: Final = 0.05  # [s] between two rounds of writing
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
@@ -56,7 +56,7 @@ class MotionRecorder:
         self._end_ns = 0  # when the file is to be ended; 0: not known yet
         self._handles: list[Handle] = []
         self._thread = PeriodicThread("motion recorder", POLL_INTERVAL, self.process_round)
-        self.fault = ""
+        self.fault: str = ""
 
     def start(self) -> None:
         """Receive messages from now on; first complete the files that a crash cut off."""

@@ -17,7 +17,7 @@ from teachpath.records import LearnedPath, ObjectPose, Scene, SceneQuery
 from teachpath.records.poses import SAME_PLACE, SAME_TURN, unit_quaternion
 from teachpath_proto.keys import Keys
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 MAX_COORDINATE: Final = 10.0  # m
 

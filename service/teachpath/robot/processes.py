@@ -20,7 +20,7 @@ from teachpath.logs import relay
 from teachpath.robot.forked_process import LOST, ForkedProcess
 from teachpath.robot.last_error import LastError
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 STOP_TIMEOUT: Final = 3.0  # [s] that a process may take to end before it is killed
 RESTART_DELAY: Final = 0.5  # [s] between a death and the next start
@@ -65,7 +65,7 @@ class SupervisedProcess:
         suggestion: str,
         on_death: Callable[[str], None] = lambda cause: None,
     ) -> None:
-        self.name = name
+        self.name: str = name
         self._function = function
         self._instructions = instructions
         self._suggestion = suggestion

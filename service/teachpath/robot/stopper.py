@@ -46,7 +46,7 @@ class Stopper:
         self._received = 0.0  # when the newest status came [s of the monotonic clock]
         self._repeating: dict[str, threading.Thread] = {}  # by execution
         self._closed = False
-        self.outcomes = {"confirmed": 0, "not_confirmed": 0}  # of the stops that were ordered
+        self.outcomes: dict[str, int] = {"confirmed": 0, "not_confirmed": 0}  # of the stops that were ordered
 
     @property
     def is_repeating(self) -> bool:

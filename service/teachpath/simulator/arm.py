@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 import mujoco
 import numpy as np
@@ -42,7 +42,7 @@ class SimulatedArm:
         self._force = np.zeros(self._model.nv)
         self._integral = np.zeros(6)  # [N m]
         self.gripper_opening: float | None = None
-        self.data = mujoco.MjData(self._model)
+        self.data: Any = mujoco.MjData(self._model)
         self.reset()
 
     def reset(self) -> None:

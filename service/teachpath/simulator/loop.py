@@ -26,7 +26,7 @@ from teachpath.time_source import TimeSource
 from teachpath_client.driver import PlayerState, SetpointPlayer
 from teachpath_proto.keys import Keys
 
-log = logging.getLogger(__name__)
+log: logging.Logger = logging.getLogger(__name__)
 
 STEPS_PER_STATE: Final = 10  # steps between two joint states: 100 Hz
 REST_STEPS_BEFORE_IDLE: Final = 200  # steps of standstill after which no physics is computed any more

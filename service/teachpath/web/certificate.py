@@ -47,7 +47,7 @@ class WebCertificate:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._stamp = self._newest()
-        self.context = _context(folder)
+        self.context: ssl.SSLContext = _context(folder)
         self._expiry = self._read_expiry()
 
     @property

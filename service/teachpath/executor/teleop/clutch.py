@@ -36,9 +36,9 @@ class Clutch:
     """
 
     def __init__(self) -> None:
-        self.engaged = False
-        self.hold_requested = False
-        self.reason = PRESS_HINT
+        self.engaged: bool = False
+        self.hold_requested: bool = False
+        self.reason: str = PRESS_HINT
         self._released = False  # whether the button was up since the clutch was last engaged
         self._pause: _Pause | None = None
 
@@ -113,8 +113,8 @@ class RemoteClutch:
     """
 
     def __init__(self, bus: Bus, keys: Keys, tracker: str, session: str, clock: Callable[[], int]) -> None:
-        self.pressed = False
-        self.last_seen_ns = 0
+        self.pressed: bool = False
+        self.last_seen_ns: int = 0
         self._tracker = tracker
         self._input = TrackerInput(bus, keys, tracker, session, clock)
 

@@ -29,7 +29,7 @@ class GripperFollower:
     """
 
     def __init__(self, closed: bool) -> None:
-        self.closed = closed
+        self.closed: bool = closed
         self._hand_closed = closed
 
     def engage(self, sample: Sample) -> None:

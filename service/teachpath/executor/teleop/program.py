@@ -77,16 +77,16 @@ class TeleopProgram:
         self._clutch = Clutch()
         self._return_timeout_ns = round(return_timeout * 1e9)
         self._followed = np.zeros(3)  # [m] where the hand was in the newest sample that was followed
-        self.waiting = False
+        self.waiting: bool = False
         self._latencies: deque[float] = deque(maxlen=MAX_LATENCIES)
         self._answered_stamp = 0
         self._turn_hint = ""
 
-    before_path = False
-    finished = False
-    progress = 0.0
-    arc_length = 0.0
-    override = 1.0
+    before_path: bool = False
+    finished: bool = False
+    progress: float = 0.0
+    arc_length: float = 0.0
+    override: float = 1.0
 
     @property
     def at_rest(self) -> bool:

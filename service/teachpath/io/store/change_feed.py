@@ -12,7 +12,7 @@ from teachpath.errors import TeachpathError
 from teachpath.io.store.changes import CHANNEL, EVERYTHING, Changed
 from teachpath.io.store.engine import is_served
 
-log = logging.getLogger("teachpath")
+log: logging.Logger = logging.getLogger("teachpath")
 
 LINE_CHECK: Final = 0.5  # [s] without a notification after which the line is tried
 RECONNECT_INTERVAL: Final = 0.5  # [s]

@@ -29,7 +29,8 @@ class Services:
     """
 
     def __init__(self, engine: Engine, station: str, folder: Path) -> None:
-        self.id, self.station = uuid.uuid4().hex[:12], station
+        self.id: str = uuid.uuid4().hex[:12]
+        self.station: str = station
         self._engine, self._writing = engine, engine.execution_options(writing=True)
         self._place = f"{socket.gethostname()}:{folder.absolute()}"
         self._role = ""

@@ -53,7 +53,7 @@ class DemonstrationRow(Base):
     """A demonstration; its samples are in the recording."""
 
     __tablename__ = "demonstrations"
-    __table_args__ = (UniqueConstraint("task", "number"),)
+    __table_args__: tuple[Any, ...] = (UniqueConstraint("task", "number"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     task: Mapped[str] = mapped_column(ForeignKey("tasks.name"), index=True)
     number: Mapped[int] = mapped_column(Integer)
@@ -101,7 +101,7 @@ class RunTable(Base):
     """A learning run over a task's demonstrations; `summary` is what a list says of it (`RunSummary`)."""
 
     __tablename__ = "runs"
-    __table_args__ = (Index("ix_runs_task_created_ns", "task", "created_ns", "id"),)
+    __table_args__: tuple[Any, ...] = (Index("ix_runs_task_created_ns", "task", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     task: Mapped[str] = mapped_column(ForeignKey("tasks.name"), index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)
@@ -129,7 +129,7 @@ class PlanRow(Base):
     """A plan with its certificate."""
 
     __tablename__ = "plans"
-    __table_args__ = (Index("ix_plans_path_created_ns", "path", "created_ns", "id"),)
+    __table_args__: tuple[Any, ...] = (Index("ix_plans_path_created_ns", "path", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     path: Mapped[str] = mapped_column(ID, index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)
@@ -140,7 +140,7 @@ class JobRow(Base):
     """Background work and how it stands."""
 
     __tablename__ = "jobs"
-    __table_args__ = (Index("ix_jobs_task_created_ns", "task", "created_ns", "id"),)
+    __table_args__: tuple[Any, ...] = (Index("ix_jobs_task_created_ns", "task", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     task: Mapped[str] = mapped_column(ID, index=True)
     kind: Mapped[str] = mapped_column(String(16))
@@ -164,7 +164,7 @@ class ExecutionTable(Base):
     """An execution of a plan, or without one of a live hand, and its last known status."""
 
     __tablename__ = "executions"
-    __table_args__ = (Index("ix_executions_created_ns", "created_ns", "id"),)
+    __table_args__: tuple[Any, ...] = (Index("ix_executions_created_ns", "created_ns", "id"),)
     id: Mapped[str] = mapped_column(ID, primary_key=True)
     plan: Mapped[str | None] = mapped_column(ForeignKey("plans.id"), index=True)
     created_ns: Mapped[int] = mapped_column(BigInteger)

@@ -59,23 +59,24 @@ class KrigedShapes:
 
     def __init__(self, paths: Array) -> None:
         starts, chords = paths[:, 0], paths[:, -1] - paths[:, 0]
-        self._starts, self.chords = starts, chords
+        self._starts = starts
+        self.chords: Array = chords
         self._share = np.linspace(0.0, 1.0, paths.shape[1])
-        self.distances = np.linalg.norm(chords[:, :2], axis=1)
-        self.yaws = np.arctan2(chords[:, 1], chords[:, 0])
+        self.distances: Array = np.linalg.norm(chords[:, :2], axis=1)
+        self.yaws: Array = np.arctan2(chords[:, 1], chords[:, 0])
         lengths = np.linalg.norm(np.diff(paths, axis=1), axis=2).sum(axis=1)
-        self.length = float(np.median(lengths))
-        self.turns = bool(np.all(self.distances > MIN_DISTANCE_SHARE * lengths))
+        self.length: float = float(np.median(lengths))
+        self.turns: bool = bool(np.all(self.distances > MIN_DISTANCE_SHARE * lengths))
         residuals = paths - starts[:, None] - self._share[:, None] * chords[:, None]
         scaled = residuals / self._scale(self.distances)[:, None, None]
-        self.in_world = scaled
+        self.in_world: Array = scaled
         self._turned = np.einsum("mji,mnj->mni", _rotations(self.yaws), scaled)
         m = len(paths)
         system = np.ones((m + 1, m + 1))
         system[:m, :m] = self._covariances(self.yaws[:, None], self.distances[:, None]) + NUGGET * np.eye(m)
         system[m, m] = 0.0
-        self.inverse = np.linalg.inv(system)
-        self.variance = self._left_out_variance()
+        self.inverse: Array = np.asarray(np.linalg.inv(system), np.float64)
+        self.variance: Array | None = self._left_out_variance()
 
     def predict(self, start: Array, goal: Array) -> Prediction:
         """Predict the path from a start to a goal (3,) [m]."""

@@ -20,9 +20,9 @@ class LeastSquares:
     """
 
     def __init__(self, points: Array, u: Array, degree: int, ends: Array | None = None) -> None:
-        self.points = points
-        self.u = u
-        self.degree = degree
+        self.points: Array = points
+        self.u: Array = u
+        self.degree: int = degree
         self._ends = points[[0, -1]] if ends is None else ends
 
     def solve(self, interior: Array, *, determined: bool = False) -> tuple[Array, Array]:

@@ -52,7 +52,7 @@ class TiedGaussianHmm(LeftRightHmm):
 
     def __init__(self, floor: Array, **options: Any) -> None:
         super().__init__(**options)
-        self.floor = floor
+        self.floor: Array = floor
 
     def widen(self, sequences: int) -> None:
         """Widen the variance to that of a new sequence about means that were estimated from so few sequences.
@@ -63,7 +63,7 @@ class TiedGaussianHmm(LeftRightHmm):
         self.variance_ *= (sequences + 1) / (sequences - 1) if sequences > 1 else SINGLE_SEQUENCE_FACTOR
 
     def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
-        self.means_ = np.zeros((self.n_components, self.n_features))
+        self.means_: Array = np.zeros((self.n_components, self.n_features))
         self._maximise(frames, np.eye(self.n_components)[owners])
 
     def _compute_log_likelihood(self, X: Array) -> Array:
@@ -77,4 +77,4 @@ class TiedGaussianHmm(LeftRightHmm):
         first = np.einsum("tq,td->qd", posteriors, frames)
         self.means_ = np.where(weight > 1e-8, first / np.maximum(weight, 1e-8), self.means_)
         squares = np.einsum("tq,tqd->d", posteriors, np.square(frames[:, None, :] - self.means_))
-        self.variance_ = np.maximum(squares / weight.sum(), self.floor)
+        self.variance_: Array = np.maximum(squares / weight.sum(), self.floor)

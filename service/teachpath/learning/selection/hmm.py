@@ -45,10 +45,10 @@ class LeftRightHmm(ABC):
     def __init__(
         self, *, states: int = 10, iterations: int = 20, tolerance: float = 1e-4, pseudo_count: float = 0.01
     ) -> None:
-        self.states = states
-        self.iterations = iterations
-        self.tolerance = tolerance
-        self.pseudo_count = pseudo_count
+        self.states: int = states
+        self.iterations: int = iterations
+        self.tolerance: float = tolerance
+        self.pseudo_count: float = pseudo_count
         self.history: tuple[float, ...] = ()  # log-likelihood of the training sequences before each M-step
 
     def __repr__(self) -> str:
@@ -56,7 +56,7 @@ class LeftRightHmm(ABC):
 
     def train(self, sequences: Sequence[Array]) -> None:
         """Fit the model to sequences of shape (frames, features) by Baum-Welch."""
-        self.n_components = min(self.states, *(len(sequence) for sequence in sequences))
+        self.n_components: int = min(self.states, *(len(sequence) for sequence in sequences))
         frames, lengths = np.concatenate(sequences), [len(sequence) for sequence in sequences]
         self._init(frames, lengths)
         self.history = ()
@@ -105,9 +105,9 @@ class LeftRightHmm(ABC):
 
     def _init(self, X: Array, lengths: Sequence[int]) -> None:
         states = self.n_components
-        self.n_features = X.shape[1]
-        self.startprob_ = np.eye(states)[0]
-        self.transmat_ = np.eye(states) + np.eye(states, k=1)
+        self.n_features: int = X.shape[1]
+        self.startprob_: Array = np.eye(states)[0]
+        self.transmat_: Array = np.eye(states) + np.eye(states, k=1)
         self.transmat_ /= self.transmat_.sum(axis=1, keepdims=True)
         edges = (np.asarray(lengths)[:, None] * np.arange(states + 1)) // states
         self._begin(np.repeat(np.tile(np.arange(states), len(lengths)), np.diff(edges, axis=1).ravel()), X)

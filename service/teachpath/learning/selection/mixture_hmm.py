@@ -37,10 +37,10 @@ class MixtureHmm(LeftRightHmm):
         self, mixtures: int, ridge: float, rng: np.random.Generator, *, time_sliced: bool = False, **options: Any
     ) -> None:
         super().__init__(**options)
-        self.mixtures = mixtures
-        self.ridge = ridge
-        self.rng = rng
-        self.time_sliced = time_sliced
+        self.mixtures: int = mixtures
+        self.ridge: float = ridge
+        self.rng: np.random.Generator = rng
+        self.time_sliced: bool = time_sliced
 
     def _begin(self, owners: NDArray[np.int64], frames: Array) -> None:
         shape = (self.n_components, self.mixtures)
@@ -51,14 +51,14 @@ class MixtureHmm(LeftRightHmm):
             if self.mixtures == 1:
                 means = np.stack([part.mean(axis=0) for part in slices])[:, None]
             spread = np.broadcast_to(np.cov(frames.T), (*shape, self.n_features, self.n_features))
-            self.weights_ = np.full(shape, 1 / self.mixtures)
+            self.weights_: Array = np.full(shape, 1 / self.mixtures)
         else:
             means, spread = _start(frames, self.n_components * self.mixtures, self.rng)
             weights = self.rng.random(shape)
             self.weights_ = weights / weights.sum(axis=1, keepdims=True)
-        self.means_ = means.reshape(*shape, self.n_features)
+        self.means_: Array = means.reshape(*shape, self.n_features)
         ridge = self.ridge * np.eye(self.n_features)
-        self.covariances_ = spread.reshape(*shape, self.n_features, self.n_features) + ridge
+        self.covariances_: Array = spread.reshape(*shape, self.n_features, self.n_features) + ridge
 
     def _log_components(self, X: Array) -> Array:
         offsets = X[:, None, None, :] - self.means_  # (frames, Q, M, d)

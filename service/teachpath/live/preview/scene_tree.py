@@ -33,7 +33,7 @@ class Viewer:
 
     def __init__(self, lock: threading.RLock, wake: Callable[[], None]) -> None:
         self._lock = lock
-        self.wake = wake
+        self.wake: Callable[[], None] = wake
         self._ordered: dict[tuple[str, str], bytes] = {}  # objects, properties, deletes: in order of their last change
         self._transforms: dict[str, bytes] = {}
         self._unacknowledged = 0

@@ -78,7 +78,8 @@ class CollisionModel:
 
     def __init__(self, scene: Scene, arm: Arm) -> None:
         """Build the model; raise UnusableInput when a shape has no size, or two have one name."""
-        self.scene, self.arm = scene, arm
+        self.scene: Scene = scene
+        self.arm: Arm = arm
         try:
             self._model = mujoco.MjModel.from_xml_string(write_mjcf(scene, arm))
         except ValueError as error:

@@ -41,7 +41,7 @@ class PlanProgram:
         PathRefused: the plan has changed since it was certified, or the way from `start_q` to its start is not free.
     """
 
-    latency = (0.0, 0.0)  # a plan answers no hand
+    latency: tuple[float, float] = (0.0, 0.0)  # a plan answers no hand
 
     def __init__(
         self,
@@ -61,11 +61,12 @@ class PlanProgram:
         self._segments = plan_segments(plan, start_q, settings, arm, dwell)
         self._next = 0  # index of the segment behind the present one
         self._length = float(plan.lengths[-1])
-        self.override = override
-        self._held = self.waiting = False
-        self._period = period
-        self._elapsed = self.arc_length = 0.0
-        self.state = MotionState(np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6), False)
+        self.override: float = override
+        self._held = False
+        self.waiting: bool = False
+        self._period, self._elapsed = period, 0.0
+        self.arc_length: float = 0.0
+        self.state: MotionState = MotionState(np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6), False)
         self._segment: Segment | None = None
         self._governor: Governor | None = None  # of the segment
         self._detour: Detour | None = None

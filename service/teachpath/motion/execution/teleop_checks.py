@@ -111,7 +111,7 @@ class SweptCheck:
         self._distance = 0.0  # [m] at the setpoint that was reached
         self._height = np.inf  # [m] of a held object over what it stood on, there
         self._nearest: Clearance | None = None
-        self.is_done = False
+        self.is_done: bool = False
 
     @property
     def nearest(self) -> str:

@@ -110,8 +110,8 @@ class TeleopFollower:
         self._target_stamp = 0
         self._shares = TriedShares()
         self.load: Load | None = None
-        self.reason = ""
-        self.answered_stamp = 0
+        self.reason: str = ""
+        self.answered_stamp: int = 0
         if self._model.clearances(start_q[None])[0].distance < settings.clearance_min:
             raise PathRefused("the arm stands too near to something; bring it nearer to its home first")
 

@@ -45,7 +45,7 @@ class Pace:
         )
         self._speeds = self._widest[0]
         self._share = 1.0  # of speed, acceleration and jerk, for the wrist's sake
-        self.reach = 1.0
+        self.reach: float = 1.0
         self._joint = ""  # that slows the tool
 
     @property

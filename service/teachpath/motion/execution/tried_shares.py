@@ -22,8 +22,9 @@ class TriedShares:
     """
 
     def __init__(self) -> None:
-        self.way = self.turn = 1.0
-        self.reason = ""
+        self.way: float = 1.0
+        self.turn: float = 1.0
+        self.reason: str = ""
 
     @property
     def are_whole(self) -> bool:

@@ -37,7 +37,7 @@ class ArcLength:
         self._lengths = np.concatenate([[0.0], np.cumsum(pieces)])
         self._speeds = np.linalg.norm(curve(grid, 1), axis=1)
         self._arc = CubicHermiteSpline(grid, self._lengths, self._speeds)
-        self.total = float(self._lengths[-1])
+        self.total: float = float(self._lengths[-1])
 
     def cusp(self) -> float | None:
         """Return the arc length [m] where the curve has a cusp; None where it has none."""

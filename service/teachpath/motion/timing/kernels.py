@@ -7,12 +7,13 @@ durations of its phases, the third derivative in the first phase, and r at its e
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import sqrt
 
-from teachpath.compiled import compiled
+from teachpath.compiled import F, compiled
 from teachpath.motion.arm.puma560 import Array
 
-kernel = compiled(error_model="numpy")  # which lets a division by zero give what it gives in numpy
+kernel: Callable[[F], F] = compiled(error_model="numpy")  # which lets a division by zero give what it gives in numpy
 
 
 @kernel

@@ -46,8 +46,8 @@ class RampFinder:
         self._table, self._step, self._limits, self._dt = trajectory.table, trajectory.step, scaled, dt
         # A planned motion keeps this share of the tool's limit in reserve, for rates that overshoot the full speed.
         self._max_rate = 1.0 / SYMMETRIC_MARGINS[0] if np.isfinite(limits.tool_speed) else np.inf
-        self.ramp = np.zeros(8)
-        self.stop = np.zeros((MAX_STOP_PERIODS, 3))
+        self.ramp: Array = np.zeros(8)
+        self.stop: Array = np.zeros((MAX_STOP_PERIODS, 3))
         self._uses = np.zeros(MAX_STOP_PERIODS)
         self._places = [round(place / dt) for place in PLACES]  # [control periods]
         self._ruckig = RuckigCheck()

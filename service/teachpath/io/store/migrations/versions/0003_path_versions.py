@@ -1,5 +1,7 @@
 """Path versions: who edited what, on which branch."""
 
+from typing import Any
+
 import sqlalchemy as sa
 from alembic import op
 
@@ -9,7 +11,7 @@ branch_labels = None
 depends_on = None
 
 # What was learned before is the first version of the branch that it begins.
-DEFAULTS = {
+DEFAULTS: dict[str, tuple[Any, Any]] = {
     "branch": (sa.String(64), "main"),
     "name": (sa.Text, "learned"),
     "author": (sa.Text, ""),

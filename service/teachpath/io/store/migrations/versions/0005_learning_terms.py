@@ -11,8 +11,8 @@ depends_on = None
 SETTING = ("guard", "min_silhouette")
 SCORE = ("departure", "deviation")
 
-runs = sa.table("runs", sa.column("id", sa.String), sa.column("document", sa.JSON))
-jobs = sa.table("jobs", sa.column("id", sa.String), sa.column("request", sa.JSON))
+runs: sa.TableClause = sa.table("runs", sa.column("id", sa.String), sa.column("document", sa.JSON))
+jobs: sa.TableClause = sa.table("jobs", sa.column("id", sa.String), sa.column("request", sa.JSON))
 
 
 def upgrade() -> None:

@@ -11,7 +11,7 @@ depends_on = None
 STATISTICS = {"account": "statistics"}
 COUNTS = {"jumps": "outliers", "leaps": "level_shifts"}
 
-demonstrations = sa.table("demonstrations", sa.column("id", sa.String), sa.column("document", sa.JSON))
+demonstrations: sa.TableClause = sa.table("demonstrations", sa.column("id", sa.String), sa.column("document", sa.JSON))
 
 
 def upgrade() -> None:

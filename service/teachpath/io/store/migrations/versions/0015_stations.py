@@ -8,7 +8,11 @@ down_revision = "0014"
 branch_labels = None
 depends_on = None
 
-ADDED = {"demonstrations": ("station",), "executions": ("station",), "jobs": ("station", "service")}
+ADDED: dict[str, tuple[str, ...]] = {
+    "demonstrations": ("station",),
+    "executions": ("station",),
+    "jobs": ("station", "service"),
+}
 
 
 def upgrade() -> None:
