@@ -2,7 +2,7 @@
 #   make demo [SPEED=4] [ARGS=--once]   the main job: tracker -> recorder -> learning -> arm
 #   make test    check and all tests          make bench   measured figures
 #   make check   format, lint, types          make proto   regenerate the messages
-#   make lint-contract   Spectral and Redocly over the description of the REST API
+#   make lint-contract   Spectral and Redocly over the description of the REST API, buf over the messages
 #   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/
 #   make docs    the documents as a site; the service shows it under /help
 #   make pins [ARGS=--upgrade]   choose the versions of requirements/ anew
@@ -82,7 +82,7 @@ $(PAGE_TOOLS): tools/page/package-lock.json | $(READY)
 check-page: $(PAGE_TOOLS)
 	@$(NPM) run --silent check
 
-# Linters of the REST API's description; what they find wrongly is named in tools/contract/spectral.yaml.
+# Linters of the REST API's description and of the messages; what they find wrongly is named in tools/contract/spectral.yaml.
 CONTRACT_TOOLS := tools/contract/node_modules/.package-lock.json
 
 $(CONTRACT_TOOLS): tools/contract/package-lock.json | $(READY)
@@ -92,6 +92,7 @@ $(CONTRACT_TOOLS): tools/contract/package-lock.json | $(READY)
 lint-contract: $(CONTRACT_TOOLS)
 	@$(BIN)/python -m tests.contract.openapi dist/openapi.json
 	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract run --silent lint
+	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract run --silent messages
 
 # What tests need beside Python's packages: found, installed where that is allowed, or named.
 SEEN = PATH="$$PATH:/usr/sbin" command -v
@@ -139,9 +140,7 @@ sbom: $(READY)
 	@$(BIN)/python tools/bill_of_materials.py
 
 proto: $(READY)
-	cd proto && ../$(BIN)/python -m grpc_tools.protoc -I . --python_out=. --pyi_out=. teachpath_proto/tracker.proto teachpath_proto/motion.proto teachpath_proto/job.proto
-	# protoc leaves open what a message is made of; a type checker would call it unknown
-	sed -i "s/_Mapping]/_Mapping[str, object]]/g" proto/teachpath_proto/*_pb2.pyi
+	@$(BIN)/python -m tests.contract.messages
 
 clean:
 	rm -rf .venv tools/page/node_modules tools/contract/node_modules .venv.log .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist service/teachpath/help

@@ -1,7 +1,8 @@
 """Drive a robot of your own: setpoints in, joint states out, in place of the simulated arm.
 
-The contract is in proto/teachpath_proto/motion.proto; the player keeps it. Put your controller into `Arm`; this one is
-wherever it was sent. Start the service without the simulated arm, `TEACHPATH_SIMULATOR__START=false teachpath serve`:
+The contract is in proto/teachpath_proto/teachpath/v1/motion.proto; the player keeps it. Put your controller into `Arm`;
+this one is wherever it was sent. Start the service without the simulated arm,
+`TEACHPATH_SIMULATOR__START=false teachpath serve`:
 
     python 04_drive_a_robot.py [--endpoint tcp/127.0.0.1:7447]
 """

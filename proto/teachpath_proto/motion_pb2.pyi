@@ -81,28 +81,28 @@ class ExecutorCommand(_message.Message):
     __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "teleop", "id")
     class Verb(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
-        UNSPECIFIED: _ClassVar[ExecutorCommand.Verb]
-        START: _ClassVar[ExecutorCommand.Verb]
-        OVERRIDE: _ClassVar[ExecutorCommand.Verb]
-        HOLD: _ClassVar[ExecutorCommand.Verb]
-        RESUME: _ClassVar[ExecutorCommand.Verb]
-        STOP: _ClassVar[ExecutorCommand.Verb]
-        REVERSE: _ClassVar[ExecutorCommand.Verb]
-        STEP: _ClassVar[ExecutorCommand.Verb]
-        REVOKE: _ClassVar[ExecutorCommand.Verb]
-        TELEOPERATE: _ClassVar[ExecutorCommand.Verb]
-        ACKNOWLEDGE: _ClassVar[ExecutorCommand.Verb]
-    UNSPECIFIED: ExecutorCommand.Verb
-    START: ExecutorCommand.Verb
-    OVERRIDE: ExecutorCommand.Verb
-    HOLD: ExecutorCommand.Verb
-    RESUME: ExecutorCommand.Verb
-    STOP: ExecutorCommand.Verb
-    REVERSE: ExecutorCommand.Verb
-    STEP: ExecutorCommand.Verb
-    REVOKE: ExecutorCommand.Verb
-    TELEOPERATE: ExecutorCommand.Verb
-    ACKNOWLEDGE: ExecutorCommand.Verb
+        VERB_UNSPECIFIED: _ClassVar[ExecutorCommand.Verb]
+        VERB_START: _ClassVar[ExecutorCommand.Verb]
+        VERB_OVERRIDE: _ClassVar[ExecutorCommand.Verb]
+        VERB_HOLD: _ClassVar[ExecutorCommand.Verb]
+        VERB_RESUME: _ClassVar[ExecutorCommand.Verb]
+        VERB_STOP: _ClassVar[ExecutorCommand.Verb]
+        VERB_REVERSE: _ClassVar[ExecutorCommand.Verb]
+        VERB_STEP: _ClassVar[ExecutorCommand.Verb]
+        VERB_REVOKE: _ClassVar[ExecutorCommand.Verb]
+        VERB_TELEOPERATE: _ClassVar[ExecutorCommand.Verb]
+        VERB_ACKNOWLEDGE: _ClassVar[ExecutorCommand.Verb]
+    VERB_UNSPECIFIED: ExecutorCommand.Verb
+    VERB_START: ExecutorCommand.Verb
+    VERB_OVERRIDE: ExecutorCommand.Verb
+    VERB_HOLD: ExecutorCommand.Verb
+    VERB_RESUME: ExecutorCommand.Verb
+    VERB_STOP: ExecutorCommand.Verb
+    VERB_REVERSE: ExecutorCommand.Verb
+    VERB_STEP: ExecutorCommand.Verb
+    VERB_REVOKE: ExecutorCommand.Verb
+    VERB_TELEOPERATE: ExecutorCommand.Verb
+    VERB_ACKNOWLEDGE: ExecutorCommand.Verb
     VERB_FIELD_NUMBER: _ClassVar[int]
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     PLAN_FIELD_NUMBER: _ClassVar[int]
@@ -133,18 +133,18 @@ class LeaseRequest(_message.Message):
     __slots__ = ("action", "name", "token", "seconds", "hold_when_lost")
     class Action(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
         __slots__ = ()
-        UNSPECIFIED: _ClassVar[LeaseRequest.Action]
-        ACQUIRE: _ClassVar[LeaseRequest.Action]
-        BEAT: _ClassVar[LeaseRequest.Action]
-        RELEASE: _ClassVar[LeaseRequest.Action]
-        ASK: _ClassVar[LeaseRequest.Action]
-        KEEP: _ClassVar[LeaseRequest.Action]
-    UNSPECIFIED: LeaseRequest.Action
-    ACQUIRE: LeaseRequest.Action
-    BEAT: LeaseRequest.Action
-    RELEASE: LeaseRequest.Action
-    ASK: LeaseRequest.Action
-    KEEP: LeaseRequest.Action
+        ACTION_UNSPECIFIED: _ClassVar[LeaseRequest.Action]
+        ACTION_ACQUIRE: _ClassVar[LeaseRequest.Action]
+        ACTION_BEAT: _ClassVar[LeaseRequest.Action]
+        ACTION_RELEASE: _ClassVar[LeaseRequest.Action]
+        ACTION_ASK: _ClassVar[LeaseRequest.Action]
+        ACTION_KEEP: _ClassVar[LeaseRequest.Action]
+    ACTION_UNSPECIFIED: LeaseRequest.Action
+    ACTION_ACQUIRE: LeaseRequest.Action
+    ACTION_BEAT: LeaseRequest.Action
+    ACTION_RELEASE: LeaseRequest.Action
+    ACTION_ASK: LeaseRequest.Action
+    ACTION_KEEP: LeaseRequest.Action
     ACTION_FIELD_NUMBER: _ClassVar[int]
     NAME_FIELD_NUMBER: _ClassVar[int]
     TOKEN_FIELD_NUMBER: _ClassVar[int]

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from grpc_tools import protoc
 
-PROTO = Path(__file__).parents[2] / "proto"
-FILES = sorted(PROTO.glob("teachpath_proto/*.proto"))
+from tests.contract import messages
+
 DECLARED = re.compile(r"^(?:(message|enum) (\w+) \{|((?:optional |repeated )?[\w.]+ )?(\w+) = (\d+);)$")
 UNIT = re.compile(r"\[(1|m|s|ns|us|Hz|rad|rad/s|rad/s\^2|N m)\b[^\]]*\]|unit of the field")
 
@@ -37,7 +36,7 @@ def unsaid(text: str) -> Iterator[str]:
         comment = ""
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.name))
+@pytest.mark.parametrize("file", messages.FILES, ids=lambda file: str(file.name))
 def test_every_field_says_what_it_is_and_in_which_unit(file: Path) -> None:
     assert list(unsaid(file.read_text())) == []
 
@@ -55,14 +54,8 @@ def test_what_a_proto_file_leaves_unsaid_is_found() -> None:
 
 
 def test_generated_messages_are_up_to_date(tmp_path: Path) -> None:
-    sources = [file.relative_to(PROTO).as_posix() for file in FILES]
-    code = protoc.main(["protoc", f"-I{PROTO}", f"--python_out={tmp_path}", f"--pyi_out={tmp_path}", *sources])
-    assert code == 0
-    # What a message is made of, which protoc leaves open, is closed by `make proto`.
-    fresh = {
-        p.relative_to(tmp_path).as_posix(): p.read_text().replace("_Mapping]", "_Mapping[str, object]]")
-        for p in tmp_path.rglob("*.py*")
-    }
-    kept = {p.relative_to(PROTO).as_posix(): p.read_text() for p in PROTO.glob("teachpath_proto/*_pb2.py*")}
-    assert len(fresh) == 2 * len(sources)
+    messages.generate(tmp_path)
+    fresh = {file.name: file.read_text() for file in tmp_path.iterdir()}
+    kept = {file.name: file.read_text() for file in messages.PACKAGE.glob("*_pb2.py*")}
+    assert len(fresh) == 2 * len(messages.FILES)
     assert fresh == kept, "run: make proto"

@@ -49,8 +49,8 @@ def is_let_in(endpoint: str, login: Login | None) -> bool:
 def attack(session: Any) -> dict[str, list[str]]:
     """Try all five, and return lists in which stands what was swallowed, tapped and answered."""
     came: dict[str, list[str]] = {"swallowed": [], "tapped": [], "answered": []}
-    plan = ExecutorCommand(verb=ExecutorCommand.START, execution="attack", plan=b"{}").SerializeToString()
-    lease = LeaseRequest(action=LeaseRequest.ACQUIRE, name="attack", seconds=30.0).SerializeToString()
+    plan = ExecutorCommand(verb=ExecutorCommand.VERB_START, execution="attack", plan=b"{}").SerializeToString()
+    lease = LeaseRequest(action=LeaseRequest.ACTION_ACQUIRE, name="attack", seconds=30.0).SerializeToString()
     # Before anything is declared that would answer in this session.
     for key, payload in ((KEYS.executor_command, plan), (KEYS.executor_lease, lease), (KEYS.reset("puma560"), b"")):
         came["answered"] += [key for _ in session.get(key, payload=payload, timeout=1.0)]

@@ -1,4 +1,4 @@
-// A hand sample as the tracker's protobuf message (proto/teachpath_proto/tracker.proto, HandSample).
+// A hand sample as the tracker's protobuf message (proto/teachpath_proto/teachpath/v1/tracker.proto, HandSample).
 const GRASP_BUTTON = 1; // button bit: grasp held
 const CLUTCH_BUTTON = 4; // button bit: the arm follows the hand
 

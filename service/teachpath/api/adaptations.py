@@ -46,7 +46,7 @@ class NewAdaptation(Body):
 
     start: TargetPose | None = Field(None, description="left out: where the object of the task's scene lies")
     goal: TargetPose | None = Field(None, description="left out: where the version ends")
-    version: int | None = Field(None, description="to adapt; without it the newest on the main branch")
+    version: int | None = Field(None, ge=1, description="to adapt; without it the newest on the main branch")
     branch: str = Field(
         "", max_length=64, pattern=BRANCH_PATTERN, description="to continue or to begin; empty: the branch of the base"
     )

@@ -19,7 +19,7 @@ class CurveToAssess(Body):
     """A curve that is being edited."""
 
     curve: CurveBody | None = Field(None, description="left out: that of the version")
-    version: int | None = Field(None, description="that was edited; without it the newest on the main branch")
+    version: int | None = Field(None, ge=1, description="that was edited; without it the newest on the main branch")
 
 
 def assessments_router(parts: Parts) -> APIRouter:

@@ -36,7 +36,7 @@ JOINTS: Final = """What the arm does, at most 25 times a second while something 
 Back-pressure: a client that reads slowly gets the newest state and none of those between. Nothing may be sent here."""
 SAMPLES: Final = """Samples of a hand from a page or a program that does not speak Zenoh; `name` is the tracker's.
 
-Binary messages are `HandSample` in protobuf (proto/teachpath_proto/tracker.proto), text messages are JSON. The name
+Binary messages are `HandSample` in protobuf (teachpath/v1/tracker.proto), text messages are JSON. The name
 belongs to this connection: another one under it is refused with code 1008, unless it shows the same `session`. A
 connection that sends nothing for 10 s, not even a ping, is closed. `end` waits until all samples have been recorded."""
 VIEW: Final = """The 3-D view as batches of commands for meshcat, in MessagePack; for the station's own page.

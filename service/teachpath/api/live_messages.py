@@ -154,7 +154,7 @@ class SampleMessage:
     """One sample of a hand, where protobuf is not at hand.
 
     Attributes:
-        sample: a `HandSample` by the names of its fields (proto/teachpath_proto/tracker.proto) [m, s, ns].
+        sample: a `HandSample` by the names of its fields (teachpath/v1/tracker.proto) [m, s, ns].
     """
 
     sample: dict[str, Any]

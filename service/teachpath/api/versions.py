@@ -26,7 +26,7 @@ BRANCH_PATTERN = r"^([^\W_][\w .-]*)?$"
 class NewVersion(Body):
     """An edited curve to save."""
 
-    base: int = Field(description="number of the version that was edited")
+    base: int = Field(ge=1, description="number of the version that was edited")
     curve: CurveBody = Field(description="as it was edited")
     branch: str = Field(
         "", max_length=64, pattern=BRANCH_PATTERN, description="to continue or to begin; empty: the branch of the base"

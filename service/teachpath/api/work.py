@@ -59,7 +59,7 @@ class NewJob(Body):
     )
     path: str = Field("", description="plan: id of the learned path")
     version: int | None = Field(
-        None, description="plan: number of its version; without it the newest on its main branch"
+        None, ge=1, description="plan: number of its version; without it the newest on its main branch"
     )
 
     @model_validator(mode="after")
@@ -76,7 +76,9 @@ class NewJob(Body):
 class NewPlan(Body):
     """What to plan of a path."""
 
-    version: int | None = Field(None, description="number of the version; without it the newest on the main branch")
+    version: int | None = Field(
+        None, ge=1, description="number of the version; without it the newest on the main branch"
+    )
 
 
 def jobs_router(parts: Parts) -> APIRouter:

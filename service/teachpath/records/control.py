@@ -11,7 +11,7 @@ from teachpath_proto.control import CommandVerb, LeaseAction
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """One command to the executor; see proto/teachpath_proto/motion.proto for what goes with which verb."""
+    """One command to the executor; see teachpath/v1/motion.proto for what goes with which verb."""
 
     verb: CommandVerb
     execution: str = ""

@@ -141,10 +141,10 @@ def test_a_number_that_is_not_finite_is_refused_in_any_field_of_any_message(
 
 
 def test_the_words_of_the_contract_are_those_of_its_messages() -> None:
-    verbs = [name.lower() for name, _ in motion_pb2.ExecutorCommand.Verb.items()]
-    assert verbs == ["unspecified", *CommandVerb]
-    actions = [name.lower() for name, _ in motion_pb2.LeaseRequest.Action.items()]
-    assert {*actions} - {"unspecified"} == {*LeaseAction} - {LeaseAction.LOOK}
+    verbs = [f"VERB_{verb.name}" for verb in CommandVerb]
+    assert motion_pb2.ExecutorCommand.Verb.keys() == ["VERB_UNSPECIFIED", *verbs]
+    named = {f"ACTION_{action.name}" for action in LeaseAction if action is not LeaseAction.LOOK}
+    assert {*motion_pb2.LeaseRequest.Action.keys()} == named | {"ACTION_UNSPECIFIED"}
 
 
 def test_a_state_that_nobody_knows_is_refused() -> None:

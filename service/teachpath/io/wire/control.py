@@ -19,7 +19,7 @@ LONGEST_STEP: Final = 10.0  # [m]
 def encode_command(command: Command) -> bytes:
     """Return the message of a command."""
     fields = {name: getattr(command, name) for name in Command.__dataclass_fields__}
-    return motion_pb2.ExecutorCommand(**{**fields, "verb": command.verb.upper()}).SerializeToString()
+    return motion_pb2.ExecutorCommand(**{**fields, "verb": f"VERB_{command.verb.upper()}"}).SerializeToString()
 
 
 def decode_command(payload: bytes) -> Command:
@@ -33,13 +33,13 @@ def decode_command(payload: bytes) -> Command:
         raise UnusableInput(f"a step of {m.length:g} m is over {LONGEST_STEP:g} m; are its units metres?")
     _name(m.who)
     _name(m.id)
-    verb = CommandVerb(motion_pb2.ExecutorCommand.Verb.Name(m.verb).lower())
+    verb = CommandVerb(motion_pb2.ExecutorCommand.Verb.Name(m.verb).removeprefix("VERB_").lower())
     return Command(**{name: getattr(m, name) for name in Command.__dataclass_fields__} | {"verb": verb})
 
 
 def encode_lease_request(request: LeaseRequest) -> bytes:
     """Return the message of a word about control."""
-    action = "UNSPECIFIED" if request.action == LeaseAction.LOOK else request.action.upper()
+    action = "ACTION_" + ("UNSPECIFIED" if request.action == LeaseAction.LOOK else request.action.upper())
     fields = {name: getattr(request, name) for name in LeaseRequest.__dataclass_fields__}
     return motion_pb2.LeaseRequest(**{**fields, "action": action}).SerializeToString()
 
@@ -49,7 +49,7 @@ def decode_lease_request(payload: bytes) -> LeaseRequest:
     m = parse(motion_pb2.LeaseRequest, payload)
     if m.action not in motion_pb2.LeaseRequest.Action.values():
         raise UnusableInput(f"action {m.action} is unknown: say {', '.join(LeaseAction)}")
-    name = motion_pb2.LeaseRequest.Action.Name(m.action)
+    name = motion_pb2.LeaseRequest.Action.Name(m.action).removeprefix("ACTION_")
     action = LeaseAction(name.lower()) if m.action else LeaseAction.LOOK
     if action in (LeaseAction.ACQUIRE, LeaseAction.ASK) and not m.name.strip():
         raise UnusableInput("control is held under a name that everybody sees; give one")
