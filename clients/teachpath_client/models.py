@@ -498,7 +498,7 @@ class Execution:
 
 @dataclass(frozen=True)
 class ExecutorStatus:
-    """Where an execution stands; see proto/teachpath_proto/motion.proto for the fields.
+    """Where an execution stands; see teachpath/v1/motion.proto for the fields.
 
     Attributes:
         execution: id of the newest execution; empty: there was none.

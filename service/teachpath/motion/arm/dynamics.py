@@ -38,7 +38,7 @@ class Dynamics:
         else:
             self._coulomb = np.array([joint.friction for joint in arm.model.joints])
             self._viscous = np.array([joint.damping for joint in arm.model.joints])
-        self.carried_mass = 0.0 if carried is None else object_mass(carried)
+        self.carried_mass: float = 0.0 if carried is None else object_mass(carried)
         self._variation = TorqueVariation(self._moving_masses(), arm)
 
     def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
