@@ -54,13 +54,17 @@ class Desk(Visit):
         ahead = self.project(f"editor.selectionCenter.map((value, i) => value + {list(along)}[i])")
         way = np.subtract(ahead, (x, y))
         way /= np.linalg.norm(way)
-        mouse = self.page.mouse
-        for far in range(4, 90, 2):  # [px]
-            mouse.move(*(np.array([x, y]) + far * way))
-            if self.ask("editor.gizmo.controls.axis") == handle:
-                break
-        else:
-            raise AssertionError(f"no handle {handle} that way")
+        mouse, far = self.page.mouse, 0
+
+        def found() -> bool:
+            nonlocal far
+            for far in range(4, 90, 2):  # [px]
+                mouse.move(*(np.array([x, y]) + far * way))
+                if self.ask("editor.gizmo.controls.axis") == handle:
+                    return True
+            return False
+
+        self.wait(found, f"the pointer is on the handle {handle}")  # which lies where it was drawn last
         mouse.down()
         mouse.move(*(np.array([x, y]) + (far + 30) * way), steps=4)
         mouse.up()

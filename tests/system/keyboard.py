@@ -86,6 +86,7 @@ def tell_by_keyboard(visit: Visit, operator: Operator) -> int:
         keys.press("ArrowRight")
 
     def begun() -> bool:
+        page.wait_for_selector("#arm button.hold:enabled")
         keys.go("Keep pressed to start")
         with operator.answer_to("executions") as answer:
             page.keyboard.down("Enter")
@@ -95,7 +96,7 @@ def tell_by_keyboard(visit: Visit, operator: Operator) -> int:
     visit.wait(begun)
     page.wait_for_selector("#arm button.hold:disabled", state="attached")
     keys.keeps_focus("the arm has started")
-    assert page.evaluate("document.querySelector('#arm progress').value") < 1  # something waits
+    visit.wait(lambda: page.evaluate("document.querySelector('#arm progress')?.value < 1"))  # something waits
     keys.press("Space")
     page.wait_for_selector("#arm button.hold:not(:disabled)")
     visit.wait(lambda: "Keep pressed to start" in keys.focused, "the focus is where it was before the arm moved")

@@ -5,8 +5,11 @@ import signal
 import subprocess
 import sys
 import uuid
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
+from typing import TypeVar
 
 import httpx
 
@@ -15,6 +18,8 @@ from teachpath_client.models import Execution
 from teachpath_client.station import Station
 from tests.ports import free_ports
 from tests.waiting import HANG, wait_until
+
+T = TypeVar("T")
 
 # What is judged elsewhere: a tracker, an arm or a hand that gets no turn on a busy machine is silent or irregular.
 BUSY = {
@@ -115,14 +120,20 @@ def family(name: str) -> list[tuple[int, str]]:
 
 def stop_arm(station: Station, execution: str) -> Execution:
     """Stop an execution; on a busy machine the executor may confirm it later than a station waits for."""
+    return confirmed(lambda: station.stop(execution))
 
-    def stopped() -> Execution | None:
-        try:
-            return station.stop(execution)
-        except NotStopped:
-            return None
 
-    return wait_until(stopped, "the executor confirms a stop")
+def confirmed(stop: Callable[[], T]) -> T:
+    """Stop again and again until that is confirmed, and return what a stop returns."""
+
+    def stopped() -> T | None:
+        with suppress(NotStopped):
+            return stop()
+        return None
+
+    found = wait_until(stopped, "the executor confirms a stop")
+    assert found is not None
+    return found
 
 
 def run(*arguments: str, folder: Path) -> Command:

@@ -82,7 +82,7 @@ def test_the_page_shows_what_the_driver_says_and_motion_nobody_asked_for_is_ackn
         station.wait_for_arm(timeout=HANG)
         with pytest.raises(ClientError, match="although no execution is under way"):
             station.begin_teleoperation("glove", scene="empty")
-        assert unasked_motion(service)  # neither rest nor another executor is enough
+        wait_until(lambda: unasked_motion(service), "neither rest nor another executor is enough")
         arm.get_by_role("button", name="acknowledge").click()
         wait_until(lambda: not unasked_motion(service), "it is acknowledged")
         arm.get_by_role("button", name="acknowledge").wait_for(state="hidden")

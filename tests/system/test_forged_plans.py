@@ -234,7 +234,7 @@ def test_the_plan_that_was_signed_moves_the_arm_over_the_bus(service: Service, p
         one.stop()
     finally:
         bus.close()
-    service.station.wait_for_arm()
+    service.station.wait_for_arm(timeout=HANG)
 
 
 def refusal(service: Service, plan: Plan) -> str:

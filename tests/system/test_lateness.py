@@ -52,7 +52,7 @@ def executor(service: Service) -> int:
 
 def motion_of(service: Service, execution: str) -> Motion:
     file = Path(service.data) / f"{execution}.mcap"
-    answer = httpx.get(f"{service.url}/api/v1/executions/{execution}/recording", trust_env=False)
+    answer = httpx.get(f"{service.url}/api/v1/executions/{execution}/recording", timeout=HANG, trust_env=False)
     file.write_bytes(answer.raise_for_status().content)
     return read_motion(file)
 
@@ -84,7 +84,7 @@ def off_path(motion: Motion) -> float:
 def test_an_executor_that_oversleeps_leaves_the_arm_on_its_path(service: Service, plan: Plan, seed: int) -> None:
     rng = np.random.default_rng(seed)
     station = service.station
-    station.wait_for_arm()
+    station.wait_for_arm(timeout=HANG)
     execution = station.begin_execution(plan.id)
     pid = executor(service)
     for pause in rng.uniform(0.02, 0.5, 4):
@@ -102,7 +102,7 @@ def test_an_executor_that_oversleeps_leaves_the_arm_on_its_path(service: Service
 
 def test_an_executor_that_dies_leaves_the_arm_at_rest_on_its_path(service: Service, plan: Plan) -> None:
     station = service.station
-    station.wait_for_arm()
+    station.wait_for_arm(timeout=HANG)
     execution = station.begin_execution(plan.id, override=0.5)
     wait_until(lambda: station.get_execution(execution.id).status.progress > 0.1, "it is on its way")
     os.kill(executor(service), signal.SIGKILL)

@@ -10,7 +10,7 @@ from teachpath_client import HandReading, Link, Tracker
 from teachpath_client.synthetic import RATE
 from tests.system.processes import Service, run
 from tests.system.test_station import FAST, SHOWN, shown
-from tests.waiting import wait_until
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
@@ -63,7 +63,7 @@ def test_a_task_is_shown_at_changing_places_and_done_at_a_new_one(service: Servi
     learned = station.learn(TASK).learned
     (path,) = learned.paths
     assert learned.notes[0].startswith("a task with a moving start and goal: ")
-    station.wait_for_arm()
+    station.wait_for_arm(timeout=HANG)
     lies = (x - 0.03, y + 0.04, z)
     try:
         station.tell_object("paper", lies)

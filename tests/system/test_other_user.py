@@ -22,7 +22,7 @@ from teachpath.io.wire import decode_state
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, read_logins
 from tests.ports import free_ports
-from tests.system.processes import Command, Service
+from tests.system.processes import Command, Service, confirmed
 from tests.waiting import HANG, wait_until
 
 pytestmark = [
@@ -115,7 +115,7 @@ def test_another_user_of_the_machine_reads_nothing_and_moves_nothing(
             assert said(attacker) == {"read": [everybody], "let in": []}
             assert said(attacker) == "ready"
             for _ in range(5):
-                service.station.stop_arm()  # returns when the executor's own status shows it
+                confirmed(service.station.stop_arm)  # returns when the executor's own status shows it
             lease(service)
             seen = len(positions)
             wait_until(lambda: len(positions) > seen + 20, "the arm speaks on")
@@ -132,6 +132,6 @@ def lease(service: Service) -> None:
     """Take control, say that one is there, and give it back: the token passes over the bus."""
     url = f"{service.url}/api/v1/lease"
     with httpx.Client(timeout=HANG, trust_env=False) as client:
-        token = client.post(url, json={"name": "operator", "seconds": 5.0}).raise_for_status().json()["token"]
+        token = client.post(url, json={"name": "operator", "seconds": 60.0}).raise_for_status().json()["token"]
         for action in ("beat", "release"):
             client.post(f"{url}/{action}", headers={"Teachpath-Lease": token}).raise_for_status()

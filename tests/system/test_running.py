@@ -148,7 +148,8 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
     assert len(operator.executions()) == count
     creep(visit, operator)
     hold(operator)
-    assert visit.page.locator("#arm .state").inner_text().startswith("Held on the path: held by")  # and why
+    state = visit.page.locator("#arm .state")
+    visit.wait(lambda: state.inner_text().startswith("Held on the path: held by"))  # and why
     assert barriers(visit.page, "held") == []
     visit.page.get_by_role("slider", name="Speed").fill("30")
     operator.until(lambda status: status["override"] == pytest.approx(0.3))
@@ -162,7 +163,7 @@ def test_a_start_must_be_meant_and_the_path_is_gone_step_by_step_and_back(visit:
 
     operator.press("Reverse")
     assert operator.until(back, again="Reverse")["length"] == 0.0
-    assert max(lengths) == lengths[0]  # where setpoints were late it goes back from where the arm came to rest
+    assert max(lengths) < lengths[0] + 1e-5  # where setpoints were late it goes back from where the arm came to rest
     operator.press("Resume")
     operator.until(lambda status: status["state"] == "following" and status["length"] > 0.0)
     assert operator.said == []

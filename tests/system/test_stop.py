@@ -27,7 +27,7 @@ from tests.system.access import barriers
 from tests.system.processes import Service, run, stop_arm
 from tests.system.test_lateness import executor, ready_plan
 from tests.system.test_view import KEYS, Server, Visit
-from tests.waiting import wait_until
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
@@ -119,7 +119,7 @@ def plan(service: Service) -> Plan:
 def begin(service: Service, plan: Plan) -> str:
     """Move the arm along a plan; return the execution once it creeps on, clear of where the object lay."""
     station = service.station
-    station.wait_for_arm()
+    station.wait_for_arm(timeout=HANG)
     execution = station.begin_execution(plan.id, override=0.2).id
     wait_until(lambda: station.get_execution(execution).status.progress > 0.2, "it is on its way")
     station.override(execution, CREEP)
@@ -154,7 +154,8 @@ def test_an_executor_that_does_not_answer_is_said_to_be_not_stopped(
     wait_confirmed(visit)
     wait_ended(service, execution)
     visit.page.close()
-    assert run("stop", "--url", service.url, folder=tmp_path).out.startswith("stopped: ")
+    said_stopped = lambda: run("stop", "--url", service.url, folder=tmp_path).out.startswith("stopped: ")  # noqa: E731
+    wait_until(said_stopped, "the command says that it is stopped")
 
 
 # the attack

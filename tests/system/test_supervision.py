@@ -3,6 +3,7 @@
 import os
 import signal
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from shutil import copytree
@@ -17,7 +18,7 @@ from teachpath_client.models import Execution
 from tests.contract.rows import a_job, learned
 from tests.system.processes import Command, Service, stop_arm
 from tests.unit.motion.ways import MIDDLE, way
-from tests.waiting import wait_until
+from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
@@ -54,7 +55,7 @@ def planned(service: Service) -> str:
     """Plan the path at this station, for a certificate is of one station."""
     (run,) = service.station.runs(TASK)
     plan = service.station.plan(run.paths[0])
-    service.station.wait_for_arm()
+    service.station.wait_for_arm(timeout=HANG)
     return plan.id
 
 
@@ -88,9 +89,21 @@ def wait_state(service: Service, execution: Execution, *states: str) -> Executio
 
 
 def follow(service: Service) -> Execution:
-    """Start an execution, and let it creep once it follows the path: its end is far, however late the test looks."""
-    execution = wait_state(service, begin(service, override=0.5), "following")
-    return service.station.override(execution.id, 0.02)
+    """Start an execution, and let it creep once it follows the path: its end is far, however late the test looks.
+
+    Where this test got no turn before that end, another one is started.
+    """
+
+    def creeping() -> Execution | None:
+        execution = wait_state(service, begin(service, override=0.5), "following", "ended")
+        with suppress(Refused):  # it has ended meanwhile
+            service.station.override(execution.id, 0.02)
+        now = service.station.get_execution(execution.id)
+        return now if now.status.state == "following" else None
+
+    found = wait_until(creeping, "an execution creeps")
+    assert found is not None
+    return found
 
 
 def kill(service: Service, part: str) -> int:
@@ -168,7 +181,7 @@ def test_an_execution_that_has_ended_leaves_an_arm_that_may_start_at_once(servic
         stop_arm(service.station, execution.id)
         wait_state(service, execution, "ended")
         execution = service.station.begin_execution(execution.plan)  # without another try
-        wait_state(service, execution, "approaching", "following")
+        wait_state(service, execution, "approaching", "following", "ended")
     stop_arm(service.station, execution.id)
     wait_state(service, execution, "ended")
 

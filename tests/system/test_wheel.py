@@ -96,7 +96,7 @@ def served(service: Environment) -> Iterator[str]:
         def answers() -> bool:
             assert process.poll() is None, (service.folder / "said").read_text()
             with suppress(httpx.TransportError):
-                return httpx.get(f"{address}/api/v1/health/live").is_success
+                return httpx.get(f"{address}/api/v1/health/live", timeout=HANG).is_success
             return False
 
         wait_until(answers, "the service answers")
@@ -115,10 +115,10 @@ def test_the_client_alone_has_its_command_and_nothing_of_the_service(wheel: Path
 def test_the_service_learns_and_serves_its_page(service: Environment, served: str) -> None:
     assert service.run("-m", "teachpath", "--version") == f"teachpath {teachpath.__version__}\n"
     assert int(service.run("-c", LEARN)) == 1
-    page = httpx.get(served)
+    page = httpx.get(served, timeout=HANG)
     assert page.is_success
     assert "<title>" in page.text
-    assert httpx.get(f"{served}/openapi.json").json()["info"]["version"] == teachpath.__version__
+    assert httpx.get(f"{served}/openapi.json", timeout=HANG).json()["info"]["version"] == teachpath.__version__
 
 
 @pytest.mark.parametrize("extra", EXTRAS)
