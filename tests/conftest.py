@@ -9,6 +9,7 @@ import shutil
 import signal
 import tempfile
 from collections.abc import Generator, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +54,13 @@ def browser() -> Iterator[Any]:
         if os.environ.get(REQUIRED):
             pytest.fail(f"{ABSENT} (or unset {REQUIRED})")
         pytest.skip(ABSENT)
+    with chromium(found) as browser:
+        yield browser
+
+
+@contextmanager
+def chromium(found: str) -> Iterator[Any]:
+    """A headless browser, of the program that was found."""
     from playwright.sync_api import sync_playwright
 
     program = Path(STATE.name) / "chromium"
