@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from teachpath_client.station import Station
     from teachpath_client.tracker import Routine, Tracker
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 __all__ = ["ClientError", "HandReading", "Link", "Routine", "Station", "Tracker"]
 

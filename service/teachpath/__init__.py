@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from teachpath.python_api import learn, plan, setpoints
     from teachpath.records import Learned, LearnedPath, Plan, Scene, SerialArm, Shape, Trajectory
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 __all__ = [
     "Arm",

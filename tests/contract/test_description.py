@@ -107,7 +107,11 @@ def test_every_kind_of_refusal_is_listed(desk: Desk) -> None:
     assert desk.get("/nothing").json()["type"] == "about:blank"
 
 
-def test_all_packages_have_the_version_of_the_project() -> None:
-    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+def test_all_packages_and_the_changelog_have_the_version_of_the_project() -> None:
+    root = Path(__file__).parents[2]
+    version = tomllib.loads((root / "pyproject.toml").read_text())["project"]["version"]
     packages = (teachpath, teachpath_client, teachpath_proto)
-    assert [package.__version__ for package in packages] == [project["version"]] * 3
+    assert [package.__version__ for package in packages] == [version] * 3
+    headings = re.findall(r"^## (.+)$", (root / "CHANGELOG.md").read_text(), re.MULTILINE)
+    released = next(heading for heading in headings if heading != "Unreleased")
+    assert re.fullmatch(re.escape(version) + r" - \d{4}-\d\d-\d\d", released), released
