@@ -26,6 +26,7 @@ from tests.waiting import HANG, wait_until
 pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
+PICTURE = re.compile(r'<img\b[^>]*src="([^":]+)"')
 FETCHED = re.compile(r"""<(?:script|img|link)\b[^>]*(?:src|href)="((?:https?:)?//[^"]*)""")
 
 
@@ -92,6 +93,15 @@ def test_a_browser_shows_and_searches_them_under_the_policy(browser: Any, addres
     page.wait_for_selector(".md-search-result__item, [class*=search] a[href*='certificate']", state="attached")
     assert said == []
     page.close()
+
+
+def test_every_picture_is_given_out(site: Path, address: str) -> None:
+    pictures = {name for page in site.rglob("*.html") for name in PICTURE.findall(page.read_text())}
+    assert {Path(name).suffix for name in pictures} >= {".png", ".webp"}
+    for name in pictures:
+        (file,) = site.rglob(Path(name).name)
+        answer = httpx.get(f"{address}/{file.relative_to(site)}", timeout=HANG, trust_env=False)
+        assert (answer.status_code, answer.headers["content-type"].split("/")[0]) == (200, "image"), name
 
 
 @pytest.mark.parametrize("name", ["%2e%2e/app.py", "..%2fapp.py", "none.html", "sitemap.xml.gz", "assets"])

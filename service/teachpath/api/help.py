@@ -25,6 +25,7 @@ MEDIA: Final = {
     ".css": "text/css; charset=utf-8",
     ".svg": "image/svg+xml",
     ".png": "image/png",
+    ".webp": "image/webp",
     ".json": "application/json",
     ".txt": "text/plain; charset=utf-8",
 }
