@@ -1,6 +1,6 @@
 # teachpath: every verb sets up its own .venv first.
 #   make demo [SPEED=4] [ARGS=--once]   the main job: tracker -> recorder -> learning -> arm
-#   make test    check and all tests          make bench   measured figures
+#   make test    check and all tests          make bench [ARGS=scale]   measured figures; how costs grow
 #   make check   format, lint, types          make proto   regenerate the messages
 #   make lint-contract   Spectral and Redocly over the description of the REST API, buf over the messages
 #   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/

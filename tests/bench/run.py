@@ -8,6 +8,7 @@ from teachpath.records import Trajectory
 from tests.bench import (
     access,
     doctor_kills,
+    growth,
     inverse,
     lateness,
     learning,
@@ -34,9 +35,14 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="Measure teachpath on this machine.")
     parser.add_argument("--quick", action="store_true", help="fewer repetitions, executions cut short")
-    quick = parser.parse_args().quick
+    parser.add_argument("what", nargs="?", choices=["scale"], help="how costs grow with a site alone; all but that")
+    asked = parser.parse_args()
+    quick = asked.quick
     began = time.monotonic()
     print(f"teachpath bench on {machine()}{', quick' if quick else ''}\n", flush=True)
+    if asked.what == "scale":
+        growth.report()
+        return
 
     figures, trajectories = recording.measure(repeats=1 if quick else 5, samples=recording.DEMO * (1 if quick else 4))
     print_report("Recording: hand samples to MCAP files and rows, every sample accounted for", figures)

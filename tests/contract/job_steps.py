@@ -56,13 +56,20 @@ def linger(*_: object, progress: Progress) -> None:
 
 
 def hang(begun: Path, *, progress: Progress) -> None:
-    begun.touch()
+    write_whole(begun, str(os.getpid()))
     time.sleep(HANG)
+
+
+def write_whole(file: Path, text: str) -> None:
+    """Write a file that is there only with its content."""
+    part = file.with_suffix(f".{os.getpid()}")
+    part.write_text(text)
+    part.replace(file)
 
 
 def wait_once(been: Path, released: Path, *, progress: Progress) -> str:
     first = not been.exists()
-    been.touch()
+    write_whole(been, str(os.getpid()))
     while first and not released.exists():
         time.sleep(0.01)
     return "first" if first else "again"

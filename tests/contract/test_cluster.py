@@ -1,9 +1,12 @@
 """A Dask cluster that is away, of other versions, or loses a worker; and the jobs of a service on one."""
 
 import queue
+import subprocess
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +21,7 @@ from teachpath.jobs.cluster_executor import ClusterExecutor
 from teachpath.jobs.executors import Limits, Work
 from teachpath.jobs.settings import JobSettings, check_executor
 from teachpath.records import JobState
-from tests.contract.job_steps import add, die, linger, refuse, tell, wait_once
+from tests.contract.job_steps import add, die, hang, linger, refuse, tell, wait_once
 from tests.ports import free_ports
 from tests.unit.jobs.test_jobs import Bench
 from tests.waiting import HANG, wait_until
@@ -44,6 +47,26 @@ def address() -> Iterator[str]:
         yield cluster.scheduler_address
 
 
+@contextmanager
+def a_worker(address: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A worker as somebody begins it on another machine."""
+    command = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--no-nanny", "--no-dashboard"]
+    with subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=Path(__file__).parents[2]) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def is_there(process: int) -> bool:
+    """Whether a process runs: it may be of nobody's, and then nobody takes its end."""
+    stat = Path(f"/proc/{process}/stat")
+    try:
+        return stat.read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
 def awaited(reports: "queue.Queue[Any]", words: str) -> None:
     while words not in reports.get(timeout=HANG)[2]:
         pass
@@ -59,16 +82,28 @@ def test_a_job_waits_for_the_cluster_and_one_whose_worker_is_lost_is_done_by_ano
         awaited(reports, "does not answer")
         with scheduler(0, port) as local:
             awaited(reports, "no worker has joined the scheduler")
+            with a_worker(cluster.address) as process:
+                wait_until(been.exists, "the worker has begun the job")
+                process.kill()
+                with pytest.raises(BrokenProcessPool, match="are gone"):
+                    lost.result(HANG)
+            wait_until(lambda: not is_there(int(been.read_text())), "the job's process has ended with its worker")
             local.scale(1)
-            wait_until(been.exists, "the worker has begun the job")
-            local.sync(local.workers[0].close, nanny=False, executor_wait=False)
-            with pytest.raises(BrokenProcessPool, match="are gone"):
-                lost.result(HANG)
-            local.scale(2)
             assert executor.work("one", Work(wait_once), (been, released)) == "again"
             released.touch()
             executor.close()
             cluster.close()
+
+
+def test_a_job_ends_with_the_service_that_ordered_it(address: str, tmp_path: Path) -> None:
+    begun, reports = tmp_path / "begun", queue.Queue[Any]()
+    cluster = Cluster(address, reports)
+    sent = cluster.submit("one", Work(hang), (begun,), LIMITS)
+    wait_until(begun.exists, "the worker has begun the job")
+    assert cluster.has_workers(sent)
+    assert is_there(int(begun.read_text()))
+    cluster.close()  # to the scheduler and the worker the same as a crash: the connection is gone
+    wait_until(lambda: not is_there(int(begun.read_text())), "the job's process has ended")
 
 
 def test_a_worker_of_other_versions_gets_no_job(address: str) -> None:

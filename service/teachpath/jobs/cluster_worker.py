@@ -15,7 +15,7 @@ from importlib.metadata import PackageNotFoundError, version
 from multiprocessing.connection import Connection
 from typing import Any, Final
 
-from distributed import get_worker
+from distributed import Status, Worker, get_worker
 
 from teachpath.errors import Cancelled
 from teachpath.jobs.cluster import DAEMON
@@ -25,6 +25,9 @@ from teachpath.process_server import CONTEXT, start_process_server
 
 COMPARED: Final = ("teachpath", "distributed", "numpy", "scipy", "numba", "hmmlearn", "ruckig", "mujoco-core")
 LOADED: Final = ("teachpath.offline.learning_job", "teachpath.learning.relearn", "teachpath.motion.planning.plan")
+
+LOOK_INTERVAL: Final = 1.0  # [s] between two looks at whether somebody still waits for the outcome
+GONE: Final = (Status.closing, Status.closed, Status.failed)  # states of a worker whose scheduler is lost, too
 
 _lock: Final = threading.Lock()
 _running: Final[dict[str, LocalExecutor]] = {}
@@ -59,19 +62,26 @@ def examine() -> dict[str, str]:
 
 
 def work_in_limits(order: str, work: Work, inputs: tuple[Any, ...], limits: Limits, topic: str) -> Any:
-    """Do the middle step of a job for an order of a service; raises as `LocalExecutor.work`."""
+    """Do the middle step of a job for an order of a service, while that is there; raises as `LocalExecutor.work`."""
     start_process_server(LOADED)
     reader, writer = CONTEXT.Pipe(duplex=False)
-    worker = get_worker()
+    worker, ended = get_worker(), threading.Event()
 
     def pass_on() -> None:
         with suppress(EOFError, OSError):  # the process has ended, maybe in the middle of a report
             while True:
                 worker.log_event(topic, list(reader.recv()))
 
+    def end_with_service() -> None:
+        while not ended.wait(LOOK_INTERVAL):
+            if not _is_wanted(worker, order):
+                executor.close()
+
     executor = LocalExecutor(limits, PipeReports(writer))
     reporter = threading.Thread(target=pass_on, name="job progress", daemon=True)
+    watcher = threading.Thread(target=end_with_service, name="job watch", daemon=True)
     reporter.start()
+    watcher.start()
     try:
         with _lock:
             if order in _cancelled:
@@ -79,12 +89,20 @@ def work_in_limits(order: str, work: Work, inputs: tuple[Any, ...], limits: Limi
             _running[order] = executor
         return executor.work(order, work, inputs)
     finally:
+        ended.set()
         with _lock:
             _running.pop(order, None)
+        watcher.join()
         executor.close()
         writer.close()
         reporter.join()
         reader.close()
+
+
+def _is_wanted(worker: Worker, order: str) -> bool:
+    """Whether the scheduler is there, and waits for an order: it lets go of those of a service that has gone."""
+    task = worker.state.tasks.get(order)
+    return worker.status not in GONE and task is not None and task.state in ("executing", "long-running")
 
 
 def cancel(order: str) -> None:
