@@ -30,10 +30,11 @@ SITE = yaml.safe_load((DEPLOY / "compose-site.yaml").read_text())
 PODS = {r["metadata"]["name"]: r["spec"]["template"]["spec"] for r in RESOURCES if "template" in r.get("spec", {})}
 OWN = "tests' own"  # of values that come from a Secret
 
+KINDS = json.loads(KUBERNETES.read_text())
+
 
 def schema(name: str) -> jsonschema.Draft202012Validator:
-    document = json.loads(KUBERNETES.read_text())
-    return jsonschema.Draft202012Validator({"$ref": f"#/$defs/{name}", **document})
+    return jsonschema.Draft202012Validator({"$ref": f"#/$defs/{name}", **KINDS})
 
 
 def faults(resource: dict[str, Any]) -> list[str]:
