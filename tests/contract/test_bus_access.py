@@ -230,10 +230,15 @@ def test_a_stop_reaches_the_executor_from_everybody_and_cannot_be_swallowed(
     assert not swallowed
     told: queue.Queue[bytes] = queue.Queue()
     subscriber = executor.declare_subscriber(STOP, lambda sample: told.put(sample.payload.to_bytes()))
+    while told.empty():  # until the station knows who listens
+        service.publish(STOP, b"")
+        time.sleep(0.01)
     for role in (Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER):
         bus = open_bus(settings, access.login(role))
         bus.publish(STOP, role.value.encode())
-        assert told.get(timeout=HANG) == role.value.encode()
+        while (payload := told.get(timeout=HANG)) == b"":
+            pass
+        assert payload == role.value.encode()
         assert bus.ask(STOP, timeout=HANG) == b"the executor"
         bus.close()
     for declared in (impostor, queryable, subscriber):

@@ -18,7 +18,7 @@ from tests.waiting import wait_until
 
 RESTING = frozenset(state for state in ExecutorState if state.is_resting)
 # Why the executor holds the arm by itself when the arm's own process gets no turn: an operator then says it again.
-STARVED = ("no joint state", "the arm has taken up no setpoint")
+STARVED = ("no joint state", "the arm has taken up no setpoint", "setpoints were late")
 AGAIN = "let the clutch go"  # what the executor asks for when the clutch is held though the arm does not follow
 SETTLED = 50  # control periods after the answer to an order in which the executor tells what came of it
 
