@@ -18,6 +18,12 @@ export class ApiError extends Error {
   }
 }
 
+/**
+ * Whether what failed may go well when it is tried again: there was no answer, too many asked, or the service could not.
+ * @param {unknown} error
+ */
+export const isPassing = (error) => error instanceof ApiError && [0, 429, 502, 503, 504].includes(error.status);
+
 const KEEP_TIME = 60_000; // [ms] that a file is kept for the browser to save it
 const PAGE_SIZE = 500; // entries of a list that are asked for at a time, as many as the service gives
 

@@ -1,7 +1,8 @@
 // Reads the lists of the state: whole, page by page, and after that only what has changed.
-import { get, getList, getPage, resourcePath } from "./api.js";
+import { get, getList, getPage, isPassing, resourcePath } from "./api.js";
 
 const MAX_SINGLE_READS = 20; // changed entries; when there are more, the list is read whole
+const RETRY_DELAY = 3000; // [ms] after which a list that could not be read is read again
 
 /** @typedef {"tasks" | "executions" | "demonstrations" | "runs" | "jobs"} ListName a list of the state */
 
@@ -18,6 +19,8 @@ export class ListReader {
   #whole = new Set(); // lists to read whole
   /** @type {Map<ListName, Set<string>>} */
   #changed = new Map(); // ids of the entries to read
+  /** @type {Set<ListName>} */
+  #unread = new Set(); // lists that could not be read, by a fault that passes
   /** @type {Promise<void> | null} */
   #reading = null; // the rounds under way
 
@@ -56,17 +59,40 @@ export class ListReader {
   }
 
   async #readRounds() {
-    while (this.#whole.size + this.#changed.size) {
-      const [whole, changed] = [[...this.#whole], [...this.#changed]];
-      this.#whole.clear();
-      this.#changed.clear();
-      const entries = changed.filter(([name]) => !whole.includes(name));
-      await Promise.all([
-        ...whole.map((name) => this.#readList(name)),
-        ...entries.map(([name, ids]) => this.#readEntries(name, [...ids])),
-      ]);
+    try {
+      while (this.#whole.size + this.#changed.size) await this.#readRound();
+    } finally {
+      this.#reading = null;
     }
-    this.#reading = null;
+    if (!this.#unread.size) return;
+    const names = [...this.#unread];
+    this.#unread.clear();
+    setTimeout(() => this.read(...names), RETRY_DELAY);
+  }
+
+  async #readRound() {
+    const [whole, changed] = [[...this.#whole], [...this.#changed]];
+    this.#whole.clear();
+    this.#changed.clear();
+    const entries = changed.filter(([name]) => !whole.includes(name));
+    await Promise.all([
+      ...whole.map((name) => this.#readList(name)),
+      ...entries.map(([name, ids]) => this.#readEntries(name, [...ids])),
+    ]);
+  }
+
+  /**
+   * What was read, or null: no event comes for what failed, so that it is read again where that may help.
+   * @template T
+   * @param {ListName} name
+   * @param {Promise<T>} read
+   * @returns {Promise<T | null>}
+   */
+  #orNull(name, read) {
+    return read.catch((error) => {
+      if (isPassing(error)) this.#unread.add(name);
+      return null;
+    });
   }
 
   /** @param {ListName} name */
@@ -74,8 +100,7 @@ export class ListReader {
     const { task } = this.store.state;
     const isOfTask = TASK_LISTS.includes(name);
     if (isOfTask && !task) return;
-    // the connection's state says so already when nothing can be read, and it is read again when it is back
-    const list = await getList(isOfTask ? resourcePath("tasks", task, name) : name).catch(() => null);
+    const list = await this.#orNull(name, getList(isOfTask ? resourcePath("tasks", task, name) : name));
     if (list && (task === this.store.state.task || !isOfTask)) await this.onList(name, list, task);
   }
 
@@ -92,7 +117,7 @@ export class ListReader {
       name === "runs" // a run is long, and all that the list says of it stands on the list's first page
         ? getPage(resourcePath("tasks", task, name)).then(({ entries }) => entries)
         : Promise.all(ids.map((id) => get(path(id))));
-    const entries = /** @type {Entry[] | null} */ (await read.catch(() => null));
+    const entries = /** @type {Entry[] | null} */ (await this.#orNull(name, read));
     const present = /** @type {Entry[] | null} */ (this.store.state[name]);
     if (!entries || !present || (isOfTask && task !== this.store.state.task)) return;
     const own = isOfTask ? entries.filter((entry) => entry.task === task) : entries;

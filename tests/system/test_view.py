@@ -152,6 +152,14 @@ def server() -> Iterator[Server]:
     server.stop()
 
 
+# What a page has that does not get ready: what it lacks is not there.
+HELD = """() => {
+  const state = Object.entries(globalThis.teachpath?.state() ?? {});
+  const lists = state.map(([name, value]) => `${name} ${value?.length ?? JSON.stringify(value)}`);
+  return [JSON.stringify(document.documentElement.dataset), ...lists].join(", ").slice(0, 3000);
+}"""
+
+
 class Visit:
     """The page as opened in the browser, with all its console said; without a graphics card every pixel costs."""
 
@@ -165,9 +173,13 @@ class Visit:
         self.page.on("response", self._on_response)
         self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
         self.page.goto(address)
-        self.page.wait_for_selector("html[data-scene=ready]", state="attached")
-        # What the service draws comes another way than what the page does, all of it at once.
-        self.page.wait_for_function("() => teachpath.worldMatrix('/robot/link6')", polling=20)
+        try:
+            self.page.wait_for_selector("html[data-scene=ready]", state="attached")
+            # What the service draws comes another way than what the page does, all of it at once.
+            self.page.wait_for_function("() => teachpath.worldMatrix('/robot/link6')", polling=20)
+        except Exception as error:
+            error.add_note(f"the console said {self.said}; the page holds {self.page.evaluate(HELD)}")
+            raise
 
     def _on_response(self, answer: Any) -> None:
         if not answer.ok and answer.status != 304:  # what has not changed since the last visit is no fault
