@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from teachpath.api.work import NewJob
 from teachpath.app import Station
 from teachpath.executor.lease import ControlLease
 from teachpath.io.documents import decode, encode
@@ -213,6 +214,12 @@ def test_a_field_of_another_kind_of_job_is_refused(desk: Desk) -> None:
     desk.put("/tasks/unshown", {})
     body = {"kind": "recut", "run": "r", "settings": {"seed": 1}}
     refused(desk.post("/tasks/unshown/jobs", body), 422, "there is no field of a job 'recut' 'settings'")
+
+
+def test_a_field_of_another_kind_may_say_nothing() -> None:
+    """Clients that are generated from the description send all fields."""
+    asked = NewJob(kind="recut", run="r", clusters=2).model_dump()
+    assert NewJob(**asked).model_dump() == asked
 
 
 def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: Desk) -> None:

@@ -64,8 +64,14 @@ class NewJob(Body):
 
     @model_validator(mode="after")
     def refuse_fields_of_other_kinds(self) -> Self:
-        """Refuse a field that this kind of job does not take, like an unknown one."""
-        for name in self.model_fields_set - FIELDS_OF_KIND[self.kind]:
+        """Refuse a field that this kind of job does not take, like an unknown one, where it says anything.
+
+        Clients that are generated from the description send every field, those that say nothing as their default.
+        """
+        said = {
+            name for name, value in self if value != NewJob.model_fields[name].get_default(call_default_factory=True)
+        }
+        for name in said - FIELDS_OF_KIND[self.kind]:
             raise PydanticCustomError(
                 "field_of_another_kind",
                 unknown_name(f"field of a job {self.kind!r}", name, sorted(FIELDS_OF_KIND[self.kind])),
