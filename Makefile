@@ -107,6 +107,10 @@ programs:
 		echo "no PostgreSQL found: its tests will be skipped; get it with: sudo apt-get install postgresql"
 	@$(SEEN) nginx >/dev/null 2>&1 || \
 		echo "no nginx found: the tests behind a proxy will be skipped; get it with: sudo apt-get install nginx-light"
+	@$(SEEN) ip >/dev/null 2>&1 && $(SEEN) certutil >/dev/null 2>&1 || { \
+		if command -v apt-get >/dev/null && [ "$$(id -u)" = 0 ]; then apt-get install -y -q iproute2 libnss3-tools; fi; } || true
+	@$(SEEN) ip >/dev/null 2>&1 && $(SEEN) certutil >/dev/null 2>&1 || \
+		echo "no ip or no certutil found: the test from another machine will be skipped; get them with: sudo apt-get install iproute2 libnss3-tools"
 
 # Tests that move arms run one after the other, so do those that draw pages, and the rest beside them: they wait so much
 # that two cores have work for three.

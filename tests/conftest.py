@@ -46,30 +46,37 @@ exec nice -n 5 {0} "$@"
 REQUIRED = "TEACHPATH_REQUIRE_BROWSER"  # set where the browser tests must run: without a browser they fail
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Chromium, headless; without one the test is left out, or fails where browser tests are asked for."""
+def find_chromium() -> str:
+    """Where Chromium is; without one the test is left out, or fails where browser tests are asked for."""
     found = next((path for name in NAMES if (path := shutil.which(name))), None)
     if found is None:
         if os.environ.get(REQUIRED):
             pytest.fail(f"{ABSENT} (or unset {REQUIRED})")
         pytest.skip(ABSENT)
-    with chromium(found) as browser:
+    return found
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium, headless."""
+    with chromium(find_chromium()) as browser:
         yield browser
 
 
 @contextmanager
-def chromium(found: str) -> Iterator[Any]:
-    """A headless browser, of the program that was found."""
+def chromium(command: str, *more: str, **environment: str) -> Iterator[Any]:
+    """A headless browser, started by a command, with more flags and variables than it needs."""
     from playwright.sync_api import sync_playwright
 
     program = Path(STATE.name) / "chromium"
-    program.write_text(CHROMIUM.format(found))
+    program.write_text(CHROMIUM.format(command))
     program.chmod(0o700)
     # Without a graphics card; these flags keep the console free of messages about that.
-    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
+    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", *more]
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(program), headless=True, args=flags)
+        browser = playwright.chromium.launch(
+            executable_path=str(program), headless=True, args=flags, env=os.environ | environment
+        )
         yield browser
         browser.close()
 

@@ -21,7 +21,7 @@ from teachpath.app import Station
 from teachpath.commands.serving import listen
 from teachpath.records import Capability, Person
 from teachpath.web.server import web_server
-from tests.conftest import NAMES
+from tests.conftest import chromium, find_chromium
 from tests.contract import stations
 from tests.ports import free_port
 from tests.system.carriers import HEADSET
@@ -84,12 +84,14 @@ def station(data: Path, namespace: str) -> Iterator[tuple[Station, str]]:
         thread.start()
         wait_until(lambda: server.started, "the server has started")
         yield station, f"https://{NAME}:{port}"
+        open_ = server.server_state
+        wait_until(lambda: not open_.connections and not open_.tasks, "the browser's connections have ended")
         server.should_exit = True
         thread.join(HANG)
 
 
 @pytest.fixture(scope="module")
-def far_browser(browser: Any, namespace: str, data: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def far_browser(namespace: str, data: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """Chromium in the namespace, which trusts the station's authority and knows the station's name."""
     home = tmp_path_factory.mktemp("home")
     trusted = home / ".pki" / "nssdb"
@@ -97,21 +99,14 @@ def far_browser(browser: Any, namespace: str, data: Path, tmp_path_factory: pyte
     authority = data / "tls" / "authority.pem"
     for words in (["-N", "--empty-password"], ["-A", "-n", "station", "-t", "C,,", "-i", str(authority)]):
         subprocess.run(["certutil", "-d", f"sql:{trusted}", *words], check=True, timeout=HANG)
-    program = home / "chromium"
-    chromium = next(path for name in NAMES if (path := shutil.which(name)))
-    program.write_text(f'#!/bin/sh\nexec ip netns exec {namespace} {chromium} "$@"\n')
-    program.chmod(0o700)
-    flags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
-    flags.append(f"--host-resolver-rules=MAP {NAME} {HERE}")
-    environment = os.environ | {"HOME": str(home)}
-    launched = browser.browser_type.launch(executable_path=str(program), headless=True, args=flags, env=environment)
-    yield launched
-    launched.close()
+    known = f"--host-resolver-rules=MAP {NAME} {HERE}"
+    with chromium(f"ip netns exec {namespace} {find_chromium()}", known, HOME=str(home)) as browser:
+        yield browser
 
 
-def test_page_websockets_and_headset_work_by_the_station_s_name(far_browser: Any, station: tuple[Station, str]) -> None:
+def test_page_websockets_and_headset_work_by_the_station_s_name(station: tuple[Station, str], far_browser: Any) -> None:
     running, address = station
-    page = far_browser.new_page()
+    page = far_browser.new_page(viewport={"width": 900, "height": 420})  # less to draw
     page.set_default_timeout(1000 * HANG)
     page.add_init_script((ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET)
     page.goto(address)
