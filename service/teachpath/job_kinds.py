@@ -167,6 +167,7 @@ class JobKinds:
                     limits=self.settings.imports,
                     object_at_grasp=at_grasp,
                     motion_marks=file.motion_marks,
+                    arm=self.settings.arm,
                 )
                 for number, file in enumerate(given.files)
             ),

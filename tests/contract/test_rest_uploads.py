@@ -1,17 +1,22 @@
 """Files over REST: sent, examined, corrected, and imported together, all or none."""
 
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from teachpath.motion.arm.kinematics import tool_pose
 from tests.contract.desk import Desk, csv, refused
+from tests.unit.io.readers.bags import write_bag
+from tests.unit.io.readers.test_bag_joints import ANGLES, COUNT, states
 from tests.waiting import wait_until
 
 OTHER_NAMES = csv().replace("t,x,y,z", "when,a,b,c")
 MAP = "t=1,x=2,y=3,z=4"
 
 
-def sent(desk: Desk, content: str, name: str) -> str:
+def sent(desk: Desk, content: str | bytes, name: str) -> str:
     answer = desk.post("/uploads", json=None, content=content, params={"name": name})
     assert answer.status_code == 201, answer.text
     assert (answer.json()["name"], answer.json()["size"]) == (name, len(content))
@@ -61,6 +66,18 @@ def test_all_files_are_imported_in_their_order(desk: Desk) -> None:
     assert [row["source"] for row in rows] == names
     assert {(row["grasp"], row["release"]) for row in rows} == {(10, 46)}
     wait_until(lambda: not kept(desk, *uploads), "what was imported is removed")
+
+
+def test_joint_states_are_examined_and_imported_by_the_kinematics_of_the_station_s_arm(
+    desk: Desk, tmp_path: Path
+) -> None:
+    upload = sent(desk, write_bag(tmp_path, "mcap", states("mcap")), "led.mcap")
+    report = examined(desk, upload, name="led.mcap", whole=True)
+    assert np.allclose(report["positions"], tool_pose(ANGLES, desk.station.settings.arm)[:, :3, 3], atol=1e-5)
+    files = [{"upload": upload, "name": "led.mcap", "whole": True}]
+    assert desk.ended(desk.post("/tasks/led/imports", {"files": files}))["outcome"] == "1-1"
+    (row,) = desk.get("/tasks/led/demonstrations").json()
+    assert (row["calibration"]["name"], row["samples"]) == ("identity", COUNT)
 
 
 def test_an_upload_is_removed_once(desk: Desk) -> None:

@@ -204,6 +204,7 @@ def _add_examination(router: APIRouter, parts: Parts) -> None:
             limits=parts.settings.imports,
             object_at_grasp=starts_at_object(store, task, examination.object_at_grasp),
             motion_marks=file.motion_marks,
+            arm=parts.settings.arm,
         )
         report = parts.reader.call(examine_upload, order, examination.motion)
         return json_response(replace(report, imported_before=store.imported_files.imported_before(task, report.sha256)))

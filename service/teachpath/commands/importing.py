@@ -118,6 +118,7 @@ def _order(
     from teachpath.offline.track_samples import PhaseMarks
     from teachpath.recorder.calibrations import Calibrations
     from teachpath.robot.scenes import Scenes
+    from teachpath.stored_arm import with_stored_arm
 
     scenes = Scenes(store.scenes, settings.scenes)
     calibrations = Calibrations(store, settings.recording, settings.calibrations, scenes.get)
@@ -134,6 +135,7 @@ def _order(
         recording=settings.recording,
         limits=settings.imports,
         object_at_grasp=starts_at_object(store, task, object_at_grasp),
+        arm=with_stored_arm(settings, store.arms).arm,
     )
 
 

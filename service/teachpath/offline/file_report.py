@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import shutil
 import tempfile
 from collections.abc import Callable, Sequence
@@ -14,12 +13,20 @@ import numpy as np
 
 from teachpath.errors import OverLimit, UnusableInput
 from teachpath.io.readers.contract import OpenQuestion, OptionNeeded
-from teachpath.io.readers.registry import recognized
+from teachpath.io.readers.registry import reads_from_disk, recognized
 from teachpath.io.readers.tables import EUROC, TABLE, TUM, table_columns
 from teachpath.io.sample_files import holds_samples
 from teachpath.io.store.recordings import RECORDINGS, Recordings
 from teachpath.offline.file_samples import FileSamples
-from teachpath.offline.import_job import UPLOAD, ImportOrder, read_upload, record_upload, upload_content
+from teachpath.offline.import_job import (
+    BEGINNING,
+    UPLOAD,
+    ImportOrder,
+    read_upload,
+    record_upload,
+    upload_content,
+    upload_digest,
+)
 from teachpath.recording.demonstration import to_world, usable_samples
 from teachpath.records import Demonstration, Vector
 
@@ -100,7 +107,7 @@ def examine_files(
 
 def examine_upload(order: ImportOrder, motion: int = 1) -> FileReport:
     """Return what was understood of an uploaded file, with one of its motions, or the first; raises NotFound."""
-    sha256 = hashlib.sha256(upload_content(order)).hexdigest()
+    sha256 = upload_digest(order)
     report = FileReport(order.name, columns=_columns(order), sha256=sha256)
     try:
         read = read_upload(order)
@@ -140,6 +147,8 @@ def examine_upload(order: ImportOrder, motion: int = 1) -> FileReport:
 
 
 def _columns(order: ImportOrder) -> tuple[str, ...]:
+    if reads_from_disk(order.kind, upload_content(order, BEGINNING), order.name):
+        return ()
     content = upload_content(order)
     kind = order.kind or recognized(content, order.name)
     if kind not in (TABLE.name, TUM.name, EUROC.name) or holds_samples(content):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -11,11 +12,13 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.documents import decode_demonstration
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.bags import is_bag
-from teachpath.io.readers.contract import ReadOptions, Track
+from teachpath.io.readers.contract import Progress, ReadOptions, Track, unheard
 from teachpath.io.readers.registry import read_motions, recognized
 from teachpath.io.sample_files import holds_samples, read_samples
 from teachpath.io.store.recording_facts import read_facts_stream
 from teachpath.io.store.salvage import salvage_stream
+from teachpath.motion.arm.model import Arm
+from teachpath.offline.recorded_arm import kinematics_of
 from teachpath.offline.track_samples import MotionMarks, PhaseMarks, samples_of
 from teachpath.recorder.annotations import MARKS
 from teachpath.recording.settings import RecordingSettings
@@ -29,10 +32,12 @@ class Source:
     """A file to import and how to read it.
 
     Attributes:
+        content: of the file; its beginning is enough where its format is read from the disk.
         kind: mcap (a recording of ours), or the name of a reader; empty: what the file has.
         options: what the user says of its format.
         marks: what the user says of the phases of its motions.
         motion_marks: of single motions, before those.
+        file: where it lies; None: it is in memory alone.
     """
 
     name: str
@@ -41,6 +46,7 @@ class Source:
     options: ReadOptions = field(default_factory=ReadOptions)
     marks: PhaseMarks = field(default_factory=PhaseMarks)
     motion_marks: tuple[MotionMarks, ...] = ()
+    file: Path | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +78,15 @@ class FileSamples:
 
 
 def read_source(
-    source: Source, calibration: Calibration, limits: ImportSettings, settings: RecordingSettings
+    source: Source,
+    calibration: Calibration,
+    limits: ImportSettings,
+    settings: RecordingSettings,
+    arm: Arm | None = None,
+    *,
+    progress: Progress = unheard,
 ) -> FileSamples:
-    """Return what a file holds.
+    """Return what a file holds; joint angles are those of `arm`, and its tool is where it was, by no calibration.
 
     Raises:
         UnusableRecording: it cannot be used; the message names the row and column.
@@ -88,7 +100,8 @@ def read_source(
     if kind in ("", "csv") and holds_samples(content):
         stated, samples = read_samples(content, name, limits)
         return FileSamples(stated.source, stated.calibration, [samples], _believed(stated, samples, name), "csv")
-    found = read_motions(content, name, kind, source.options, limits)
+    tool = None if arm is None else kinematics_of(arm)
+    found = read_motions(content, name, kind, source.options, limits, tool, file=source.file, progress=progress)
     marks = replace(source.marks, whole=True) if found.whole_motion else source.marks
     count = len(found.tracks)
     own = {each.motion: each for each in source.motion_marks if each.says_anything}
@@ -100,7 +113,7 @@ def read_source(
     phases = motions[0].phases if len(motions) == 1 else f"{len(motions)} motions, the first: {motions[0].phases}"
     return FileSamples(
         name,
-        calibration,
+        Calibration("identity") if found.joint_tracks else calibration,
         [motion.samples for motion in motions],
         format=kind or recognized(content, name),
         understood=(*found.understood, _extent(found.tracks[0]), phases),

@@ -6,15 +6,19 @@ import hashlib
 import itertools
 import shutil
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from io import BufferedReader
 from pathlib import Path
 
 from teachpath.errors import NotFound, UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.readers.contract import ReadOptions
+from teachpath.io.readers.contract import ReadOptions, unheard
+from teachpath.io.readers.registry import reads_from_disk
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
+from teachpath.motion.arm.model import Arm
 from teachpath.offline.file_samples import FileSamples, Source, read_source
 from teachpath.offline.importing import import_samples
 from teachpath.offline.track_samples import MotionMarks, PhaseMarks
@@ -22,6 +26,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 
 UPLOAD, PREPARED = "upload", "prepared"  # in the folder of an import: the file, and what was made of it
+BEGINNING = 65536  # bytes of a file, by which its format is told
 
 
 Progress = Callable[[float, str], None]
@@ -67,7 +72,8 @@ class ImportOrder:
     """An uploaded file, and what demonstrations are made of it with; `folder` holds the file.
 
     The ids of the demonstrations follow from `key`, that of the job, so that a job which is run again makes the same
-    ones, and never a second set beside recordings that were taken over just before a crash.
+    ones, and never a second set beside recordings that were taken over just before a crash. `arm` is that of joint
+    angles in the file; None: no arm is known.
     """
 
     key: str
@@ -83,6 +89,7 @@ class ImportOrder:
     limits: ImportSettings
     object_at_grasp: bool = False
     motion_marks: tuple[MotionMarks, ...] = ()
+    arm: Arm | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,26 +141,47 @@ def prepare_import(order: ImportOrder, *, progress: Progress = lambda fraction, 
     prepared = order.folder / PREPARED
     shutil.rmtree(prepared, ignore_errors=True)  # of an attempt whose process died
     progress(0.05, f"reading {order.name}")
-    read = read_upload(order)
+    read = read_upload(order, progress=lambda share: progress(0.05 + 0.25 * share, f"reading {order.name}"))
     made = record_upload(order, read, prepared, progress=progress)
-    sha256 = hashlib.sha256(upload_content(order)).hexdigest()
+    sha256 = upload_digest(order)
     return PreparedImport(tuple(replace(row, source_sha256=sha256) for row, _ in made), read.understood)
 
 
-def read_upload(order: ImportOrder) -> FileSamples:
-    """Return what an uploaded file holds; raises as `prepare_import`."""
+def read_upload(order: ImportOrder, *, progress: Callable[[float], None] = unheard) -> FileSamples:
+    """Return what an uploaded file holds, and tell the share that was read; raises as `prepare_import`."""
+    file = None
+    content = upload_content(order, BEGINNING)
+    if reads_from_disk(order.kind, content, order.name):
+        file = order.folder / UPLOAD
+    else:
+        content = upload_content(order)
     return read_source(
-        Source(order.name, upload_content(order), order.kind, order.options, order.marks, order.motion_marks),
+        Source(order.name, content, order.kind, order.options, order.marks, order.motion_marks, file),
         order.calibration,
         order.limits,
         order.recording,
+        order.arm,
+        progress=progress,
     )
 
 
-def upload_content(order: ImportOrder) -> bytes:
-    """Return the bytes of an uploaded file; raises NotFound."""
+def upload_content(order: ImportOrder, most: int = -1) -> bytes:
+    """Return the bytes of an uploaded file, `most` of them at most; raises NotFound."""
+    with _upload(order) as stream:
+        return stream.read(most)
+
+
+def upload_digest(order: ImportOrder) -> str:
+    """Return the SHA-256 of an uploaded file in hexadecimal digits; raises NotFound."""
+    with _upload(order) as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+@contextmanager
+def _upload(order: ImportOrder) -> Iterator[BufferedReader]:
     try:
-        return (order.folder / UPLOAD).read_bytes()
+        with (order.folder / UPLOAD).open("rb") as stream:
+            yield stream
     except OSError as error:
         raise NotFound(f"the upload of {order.name} cannot be read: {error.strerror}; send it again") from None
 

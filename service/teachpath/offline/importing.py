@@ -10,6 +10,7 @@ import numpy as np
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.store.store import Store
+from teachpath.motion.arm.model import Arm
 from teachpath.offline.file_samples import FileSamples, Source, read_source
 from teachpath.offline.import_target import existing_task
 from teachpath.recorder.annotations import Annotations
@@ -37,6 +38,7 @@ def import_file(
     scene: Scene,
     calibration: Calibration,
     limits: ImportSettings,
+    arm: Arm | None = None,
     object_at_grasp: bool = False,
     progress: Callable[[float, str], None] = lambda fraction, what: None,
     new_id: Callable[[], str] = random_id,
@@ -45,13 +47,14 @@ def import_file(
 
     A recording of ours (mcap, or a CSV file of samples) brings its own samples, tracker and calibration, is cut as it
     was live, is judged no better than it was, and keeps what an operator said of it: mark, trim, discarded. The task is
-    made when it does not exist. The file is read and checked whole before the first one is stored. `new_id` returns the
-    id of the next one; in a new task with `object_at_grasp` each motion begins at its object.
+    made when it does not exist. The file is read and checked whole before the first one is stored. Joint angles in it
+    are those of `arm`. `new_id` returns the id of the next one; in a new task with `object_at_grasp` each motion begins
+    at its object.
 
     Raises:
         UnusableInput: a bad task name, or a file that cannot be used (with its row and column).
     """
-    read = read_source(source, calibration, limits, settings)
+    read = read_source(source, calibration, limits, settings, arm)
     return import_samples(
         store,
         settings,

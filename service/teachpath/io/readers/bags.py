@@ -1,11 +1,11 @@
-"""Bags of ROS 2 (MCAP, SQLite) and of ROS 1: poses, odometry and transforms of one topic as a motion."""
+"""Bags of ROS 2 (MCAP, SQLite) and of ROS 1: poses, transforms or joint states of one topic as a motion."""
 
 from __future__ import annotations
 
 import struct
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
@@ -14,12 +14,21 @@ import numpy as np
 
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.readers.contract import UNITS, FileMotions, OptionNeeded, Reader, ReadOptions, Track
+from teachpath.io.readers.bag_joints import JOINT_STATE, SECOND, counted, joint_topics, read_joint_states
+from teachpath.io.readers.contract import (
+    UNITS,
+    FileMotions,
+    OptionNeeded,
+    Progress,
+    Reader,
+    ReadOptions,
+    Track,
+    unheard,
+)
 
 MCAP_HEAD: Final = b"\x89MCAP0\r\n\x01"  # its magic, and the opcode of its header
 SQLITE_HEAD, BAG_HEAD = b"SQLite format 3\0", b"#ROSBAG V"
 PROFILE: Final = "ros2"  # what the header of a bag in MCAP says of itself
-SECOND: Final = 1_000_000_000  # [ns]
 
 
 @dataclass
@@ -48,23 +57,38 @@ def is_bag(content: bytes) -> bool:
 
 
 def read_bag(content: bytes, name: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
+    """Read a bag that is in memory; as `read_bag_file`."""
+    with TemporaryDirectory(prefix="teachpath-") as folder:
+        file = Path(folder) / "bag"
+        file.write_bytes(content)
+        return read_bag_file(file, name, options, limits, unheard)
+
+
+def read_bag_file(
+    file: Path, name: str, options: ReadOptions, limits: ImportSettings, progress: Progress
+) -> FileMotions:
     """Read the poses of one topic, or of one child frame of transforms; `options.track` chooses among several.
 
-    Stamps are those of the messages' headers; where they are zero, when the message was recorded.
+    Joint states are read where their topic is chosen, or where there are no poses. Stamps are those of the messages'
+    headers; where they are zero, when the message was recorded.
 
     Raises:
-        UnusableRecording: the bag is damaged, or holds no poses; OptionNeeded: those of several.
+        UnusableRecording: the bag is damaged, or holds no motion; OptionNeeded: those of several.
         UnusableInput: rosbags is not installed.
     """
-    with _opened(content, name) as bag:
+    with _opened(file, name) as bag:
         poses = [connection for connection in bag.connections if connection.msgtype in POSES]
+        joints = joint_topics(bag)
+        if options.track in joints or (joints and not poses):
+            states = read_joint_states(bag, name, options, limits, progress)
+            return replace(states, choices=_choices(poses, joints, ()))
         if not poses:
             held = sorted({connection.msgtype.replace("/msg/", "/") for connection in bag.connections})
-            known = ", ".join(kind.replace("/msg/", "/") for kind in POSES)
+            known = ", ".join(kind.replace("/msg/", "/") for kind in (*POSES, JOINT_STATE))
             raise UnusableRecording(f"{name}: no topic of {known} in it; it holds {', '.join(held) or 'none'}")
         wanted = [connection for connection in poses if options.track in ("", connection.topic)] or poses
-        found = _read(bag, wanted, name, limits)
-    track, readings = _chosen(found, options.track, name)
+        found = _read(bag, wanted, name, limits, progress)
+    track, readings = _chosen(found, options.track, name, joints)
     unit = options.units or "m"
     poses_ = np.array(readings.poses)
     clock = "time from the headers" if not readings.logged else "time as recorded: the headers have none"
@@ -75,13 +99,18 @@ def read_bag(content: bytes, name: str, options: ReadOptions, limits: ImportSett
         "orientation as x, y, z, w",
     )
     positions, turns = poses_[:, :3] * UNITS[unit], poses_[:, [6, 3, 4, 5]]
-    names = {connection.topic for connection in poses if connection.msgtype not in TRANSFORMS} | set(found)
-    choices = tuple(sorted(names)) if len(names) > 1 else ()
+    choices = _choices(poses, joints, found)
     return FileMotions([Track(np.array(readings.stamps, np.int64), positions, turns)], understood, choices=choices)
 
 
+def _choices(poses: list[Any], joints: Iterable[str], found: Iterable[str]) -> tuple[str, ...]:
+    """Return what may be chosen, if there is a choice; child frames of transforms are known when they were read."""
+    names = {connection.topic for connection in poses if connection.msgtype not in TRANSFORMS} | {*joints, *found}
+    return tuple(sorted(names)) if len(names) > 1 else ()
+
+
 @contextmanager
-def _opened(content: bytes, name: str) -> Iterator[Any]:
+def _opened(file: Path, name: str) -> Iterator[Any]:
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
@@ -90,12 +119,14 @@ def _opened(content: bytes, name: str) -> Iterator[Any]:
             f"{name} is a bag, which needs {error.name}, which is not installed; install it with: pip install "
             "'teachpath[ros]'"
         ) from None
-    suffix = ".mcap" if content.startswith(MCAP_HEAD) else ".db3" if content.startswith(SQLITE_HEAD) else ".bag"
+    with file.open("rb") as stream:
+        head = stream.read(len(SQLITE_HEAD))
+    suffix = ".mcap" if head.startswith(MCAP_HEAD) else ".db3" if head.startswith(SQLITE_HEAD) else ".bag"
     with TemporaryDirectory(prefix="teachpath-") as folder:
-        file = Path(folder) / f"file{suffix}"
-        file.write_bytes(content)
+        named = Path(folder) / f"file{suffix}"  # by its ending the library tells the storage
+        named.symlink_to(file.resolve())
         try:
-            with AnyReader([file], default_typestore=get_typestore(Stores.LATEST)) as bag:
+            with AnyReader([named], default_typestore=get_typestore(Stores.LATEST)) as bag:
                 yield bag
         except MemoryError:  # the length of a record is wrong, or right and too large
             raise UnusableRecording(
@@ -104,11 +135,13 @@ def _opened(content: bytes, name: str) -> Iterator[Any]:
             ) from None
 
 
-def _read(bag: Any, connections: list[Any], name: str, limits: ImportSettings) -> dict[str, _Readings]:
+def _read(
+    bag: Any, connections: list[Any], name: str, limits: ImportSettings, progress: Progress
+) -> dict[str, _Readings]:
     """Return the readings of each topic, of transforms those of each child frame."""
     found: dict[str, _Readings] = {}
     count = 0
-    for connection, logged, content in bag.messages(connections=connections):
+    for connection, logged, content in counted(bag, connections, progress):
         kind = connection.msgtype
         for header, child, position, turn in POSES[kind](bag.deserialize(content, kind)):
             readings = found.setdefault(child or connection.topic, _Readings(header.frame_id, kind))
@@ -128,13 +161,16 @@ def _read(bag: Any, connections: list[Any], name: str, limits: ImportSettings) -
     return found
 
 
-def _chosen(found: dict[str, _Readings], wanted: str, name: str) -> tuple[str, _Readings]:
+def _chosen(found: dict[str, _Readings], wanted: str, name: str, joints: tuple[str, ...]) -> tuple[str, _Readings]:
+    names = sorted({*found, *joints})
     if wanted and wanted not in found:
-        raise OptionNeeded(f"{name}: no {wanted!r} in it", "track", *sorted(found))
+        raise OptionNeeded(f"{name}: no {wanted!r} in it", "track", *names)
+    if not found and joints:
+        raise OptionNeeded(f"{name}: its topics of poses hold no messages", "track", *joints)
     if not found:
         raise UnusableRecording(f"{name}: its topics of poses hold no messages")
     if len(found) > 1 and not wanted:
-        raise OptionNeeded(f"{name}: it holds {len(found)} of them", "track", *sorted(found))
+        raise OptionNeeded(f"{name}: it holds {len(names)} of them", "track", *names)
     track = wanted or next(iter(found))
     if found[track].logged not in (0, len(found[track].stamps)):
         raise UnusableRecording(f"{name}: only some messages of {track} have a stamp; write all with one, or none")
@@ -169,4 +205,4 @@ POSES: Final = {
     "tf/msg/tfMessage": _transforms,  # in old bags of ROS 1
 }
 
-ROSBAG = Reader("rosbag", "bag of ROS 1 or 2", read_bag, lambda content, name: is_bag(content))
+ROSBAG = Reader("rosbag", "bag of ROS 1 or 2", read_bag, lambda content, name: is_bag(content), read_file=read_bag_file)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -118,6 +119,21 @@ class Track:
 
 
 @dataclass(frozen=True, eq=False)
+class JointTrack:
+    """The recorded joint angles of an arm; where its tool was follows from the kinematics of the station's arm.
+
+    Attributes:
+        stamps_ns: (n,) of the device's clock, whatever its epoch.
+        names: of the joints (k,), perhaps more than the arm has, in any order.
+        angles: (n, k) [rad].
+    """
+
+    stamps_ns: Integers
+    names: tuple[str, ...]
+    angles: Array
+
+
+@dataclass(frozen=True, eq=False)
 class FileMotions:
     """What a reader has found in a file.
 
@@ -126,16 +142,25 @@ class FileMotions:
         understood: what was taken for time, units, orientation and frame, one phrase each.
         whole_motion: every motion is the transport alone, by the nature of the format.
         choices: what `ReadOptions.track` may name: bodies, markers or topics; empty: there is no choice.
+        joint_tracks: angles instead of tracks; each that has all joints of the arm is a motion of its tool.
     """
 
     tracks: Sequence[Track]
     understood: tuple[str, ...] = ()
     whole_motion: bool = False
     choices: tuple[str, ...] = ()
+    joint_tracks: Sequence[JointTrack] = ()
+
+
+Progress = Callable[[float], None]
 
 
 def _never(content: bytes, name: str) -> bool:
     return False
+
+
+def unheard(share: float) -> None:
+    """Tell nobody how far reading has come."""
 
 
 @dataclass(frozen=True)
@@ -149,6 +174,8 @@ class Reader:
             UnusableRecording with a sentence that names the row, the value and the way out, or OptionNeeded.
         recognizes: tells whether content and name are certainly of this format.
         defaults: options of the format where neither the user nor the file says anything.
+        read_file: likewise, called with a file of any size where it lies, and with what is told the share that was
+            read; None: files of the format are taken into memory, and are limited.
     """
 
     name: str
@@ -156,3 +183,4 @@ class Reader:
     read: Callable[[bytes, str, ReadOptions, ImportSettings], FileMotions]
     recognizes: Callable[[bytes, str], bool] = _never
     defaults: dict[str, Any] = field(default_factory=dict)
+    read_file: Callable[[Path, str, ReadOptions, ImportSettings, Progress], FileMotions] | None = None

@@ -6,6 +6,7 @@ import functools
 from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import entry_points
+from pathlib import Path
 
 from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
@@ -13,7 +14,17 @@ from teachpath.io.readers.arrays import MATRICES, NPY, NPZ, ROBOTTASKS, check_co
 from teachpath.io.readers.bags import ROSBAG
 from teachpath.io.readers.checks import checked
 from teachpath.io.readers.columns import parse_columns
-from teachpath.io.readers.contract import QUATERNION_ORDERS, TIME_UNITS, UNITS, FileMotions, Reader, ReadOptions
+from teachpath.io.readers.contract import (
+    QUATERNION_ORDERS,
+    TIME_UNITS,
+    UNITS,
+    FileMotions,
+    Progress,
+    Reader,
+    ReadOptions,
+    unheard,
+)
+from teachpath.io.readers.joints import ToolKinematics, with_tool_motions
 from teachpath.io.readers.motion_capture import MOTIVE, TRC, VICON
 from teachpath.io.readers.tables import EUROC, TABLE, TUM
 
@@ -48,6 +59,12 @@ def recognized(content: bytes, name: str) -> str:
     return next((reader.name for reader in readers().values() if reader.recognizes(content, name.lower())), TABLE.name)
 
 
+def reads_from_disk(kind: str, beginning: bytes, name: str) -> bool:
+    """Tell whether files of a format are read where they lie; `kind` may be empty, or mcap, or unknown."""
+    reader = readers().get(kind or recognized(beginning, name))
+    return reader is not None and reader.read_file is not None
+
+
 def check_options(name: str, kind: str, options: ReadOptions) -> None:
     """Raise UnusableRecording when a file `name` cannot be read as asked for; `kind` may also be mcap or empty."""
     known = [*readers(), "mcap"]
@@ -66,15 +83,28 @@ def check_options(name: str, kind: str, options: ReadOptions) -> None:
     parse_columns(options.columns)
 
 
-def read_motions(content: bytes, name: str, kind: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
+def read_motions(
+    content: bytes,
+    name: str,
+    kind: str,
+    options: ReadOptions,
+    limits: ImportSettings,
+    arm: ToolKinematics | None = None,
+    *,
+    file: Path | None = None,
+    progress: Progress = unheard,
+) -> FileMotions:
     """Read the motions of a file and check them.
 
     Args:
-        content: of the file.
+        content: of the file; its beginning is enough where `reads_from_disk` and the file is given.
         name: of the file, for errors.
         kind: name of its format; empty: that which it has.
         options: what the user says of it.
         limits: of what it may hold.
+        arm: whose joint angles it may hold; None: no arm is known.
+        file: where it lies, of any size.
+        progress: told the share that was read, of a file that lies somewhere.
 
     Raises:
         UnusableRecording: with the row or sample that is wrong, and the way out.
@@ -86,11 +116,15 @@ def read_motions(content: bytes, name: str, kind: str, options: ReadOptions, lim
         raise UnusableRecording(f"{name}: the file is empty")
     reader = readers()[kind or recognized(content, name)]
     try:
-        found = reader.read(content, name, options, limits)
+        if file is not None and reader.read_file is not None:
+            found = reader.read_file(file, name, options, limits, progress)
+        else:
+            found = reader.read(content, name, options, limits)
     except (UnusableInput, MemoryError):
         raise
     except Exception as error:  # damage shows as whatever a reader, a decompressor or an unpacking raises
         raise UnusableRecording(f"{name}: not a whole file of format {reader.name} ({reader.title}): {error}") from None
+    found = with_tool_motions(found, arm, name)
     check_count(name, len(found.tracks), sum(len(track.positions) for track in found.tracks), limits)
     if not found.tracks:
         raise UnusableRecording(f"{name}: there are no motions in it")

@@ -18,6 +18,7 @@ SECOND = 1_000_000_000
 POSE, COVARIANT = "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped"
 TRANSFORM, TRANSFORMS = "geometry_msgs/msg/TransformStamped", "tf2_msgs/msg/TFMessage"
 ODOMETRY, TEXT = "nav_msgs/msg/Odometry", "std_msgs/msg/String"
+JOINTS = "sensor_msgs/msg/JointState"
 STORES["bag"].register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", TRANSFORMS))  # of tf2
 
 
@@ -49,6 +50,12 @@ class Messages:
         twist = self._new("geometry_msgs/msg/Twist", still, still)
         moving = self._new("geometry_msgs/msg/TwistWithCovariance", twist, spread)
         return self._new(ODOMETRY, header, child, covariant, moving)
+
+    def joints(self, stamp_ns: int, names: Sequence[str], angles: Array) -> Any:
+        """Return a message of joints that stand still."""
+        return self._new(
+            JOINTS, self._header(stamp_ns, ""), list(names), np.ascontiguousarray(angles), np.zeros(0), np.zeros(0)
+        )
 
     def text(self, content: str) -> Any:
         """Return a message that is no pose."""
