@@ -22,7 +22,7 @@ from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
 from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, TeleopRequest
 from teachpath.robot.executor_monitor import ExecutorMonitor
-from teachpath.robot.motion_recorder import SETTLING_NS, STOPPING_NS, MotionRecorder
+from teachpath.robot.motion_recorder import SETTLING_NS, MotionRecorder
 from teachpath.robot.stopper import Stopper
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.keys import Keys
@@ -70,7 +70,7 @@ class Executions:
     def end_lost(self, cause: str) -> None:
         """End the execution that is under way as faulted, because the executor died of `cause`."""
         self._monitor.end_lost(cause)
-        self._recorder.finish_after(STOPPING_NS)
+        self._recorder.finish_at_rest()
 
     def faults(self) -> list[str]:
         """Return why an execution is not recorded or cannot start, in sentences for the operator."""

@@ -10,11 +10,14 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Final
 
+import numpy as np
+
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.bus import Bus, Handle
 from teachpath.io.store.motions import MotionHeader, Motions, MotionTake
-from teachpath.io.wire import decode_setpoint, decode_status, without_way_to_rest
+from teachpath.io.wire import decode_setpoint, decode_state, decode_status, without_way_to_rest
 from teachpath.periodic_thread import PeriodicThread
+from teachpath.records import JointState
 from teachpath_proto.keys import Keys
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -22,7 +25,8 @@ log: logging.Logger = logging.getLogger(__name__)
 POLL_INTERVAL: Final = 0.05  # [s] between two rounds of writing
 FLUSH_NS: Final = 1_000_000_000  # between two flushes
 SETTLING_NS: Final = 500_000_000  # after the end of an execution, in which the arm still settles
-STOPPING_NS: Final = 2_000_000_000  # after the death of the executor, in which the arm follows its way to rest
+STOPPING_NS: Final = 5_000_000_000  # after the death of the executor, in which the arm comes to rest on its way
+REST_SPEED: Final = 0.05  # [rad/s] below which it rests
 FILE_END_TIMEOUT: Final = 10.0  # [s] that somebody waits for the end of a file
 
 
@@ -54,6 +58,7 @@ class MotionRecorder:
         self._last_cycle = -1
         self._flushed = 0
         self._end_ns = 0  # when the file is to be ended; 0: not known yet
+        self._awaits_rest = False  # whether it is ended sooner, when the arm rests
         self._handles: list[Handle] = []
         self._thread = PeriodicThread("motion recorder", POLL_INTERVAL, self.process_round)
         self.fault: str = ""
@@ -103,6 +108,12 @@ class MotionRecorder:
         with self._lock:
             self._end_ns = self._end_ns or self._clock() + time_ns
 
+    def finish_at_rest(self) -> None:
+        """End the recording when the arm rests, because its executor has died; after `STOPPING_NS` in any case."""
+        with self._lock:
+            self._awaits_rest = not self._end_ns
+            self._end_ns = self._end_ns or self._clock() + STOPPING_NS
+
     def wait_for_file(self, execution: str) -> None:
         """Wait until the file of an execution that is over is complete, but no longer than `FILE_END_TIMEOUT`."""
         if self._thread.is_running:
@@ -148,13 +159,15 @@ class MotionRecorder:
                     return
                 if status.state.is_resting and not self._end_ns:
                     self._end_ns = at_ns + SETTLING_NS
+            elif topic == "states" and self._awaits_rest and _rests(decode_state(payload)):
+                self._awaits_rest, self._end_ns = False, min(self._end_ns, at_ns + SETTLING_NS)
             try:
                 self._take.write(topic, payload, at_ns)
             except OSError as error:
                 self._fail(error)
 
     def _finish(self) -> None:
-        take, self._take, self._end_ns = self._take, None, 0
+        take, self._take, self._end_ns, self._awaits_rest = self._take, None, 0, False
         if take is None:
             return
         self._file_ended.notify_all()
@@ -172,3 +185,8 @@ class MotionRecorder:
         self._file_ended.notify_all()
         self.fault = f"execution {self._execution} is not recorded: {error}; make room on the disk"
         log.error("%s", self.fault)
+
+
+def _rests(arm: JointState) -> bool:
+    """Tell whether an arm stands at the end of its way to rest."""
+    return arm.stopped and float(np.abs(arm.velocity).max()) < REST_SPEED

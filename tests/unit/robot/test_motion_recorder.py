@@ -13,8 +13,8 @@ from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.motions import MotionHeader, Motions, read_motion
 from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
-from teachpath.records import ExecutorStatus, JournalEntry, Plan, Setpoint
-from teachpath.robot.motion_recorder import SETTLING_NS, MotionRecorder
+from teachpath.records import ExecutorStatus, JointState, JournalEntry, Plan, Setpoint
+from teachpath.robot.motion_recorder import SETTLING_NS, STOPPING_NS, MotionRecorder
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 from tests.unit.executor.executors import Bench
@@ -41,6 +41,14 @@ class Desk:
         setpoint = Setpoint(cycle, self.now, self.now + 1000, q, q, q, False, execution, True)
         self.bus.publish(KEYS.setpoint("puma560"), wire.encode_setpoint(setpoint))
         self.now += 4_000_000
+
+    def move(self, speed: float, *, stopped: bool = True) -> None:
+        """Let the arm say how fast it moves [rad/s], and whether it has come to the end of its way to rest."""
+        zero = np.zeros(6)
+        place = (0.0,) * 3, (0.0,) * 4
+        state = JointState(self.now, 1, zero, zero + speed, zero, 0.0, 0, False, False, *place, stopped=stopped)
+        self.bus.publish(KEYS.state("puma560"), wire.encode_state(state))
+        self.recorder.process_round()
 
     def tell(self, state: str) -> None:
         status = ExecutorStatus(execution="execution-1", state=ExecutorState(state))
@@ -87,6 +95,27 @@ def test_who_asks_right_after_the_end_waits_for_the_whole_file(tmp_path: Path) -
         assert desk.motions.path("execution-1").suffix == ".part"
         desk.now += SETTLING_NS + 1
         assert asked.result().suffix == ".mcap"
+    desk.recorder.stop()
+
+
+def test_after_the_death_of_the_executor_the_file_goes_on_until_the_arm_rests(tmp_path: Path) -> None:
+    desk = Desk(tmp_path)
+    desk.recorder.begin(MotionHeader("execution-1", "puma560"))
+    desk.send(0)
+    desk.recorder.finish_at_rest()
+    desk.now += STOPPING_NS // 2  # in which its process got no turn
+    for speed, stopped in ((0.4, False), (0.3, True), (0.0, True)):
+        desk.move(speed, stopped=stopped)
+        desk.now += SETTLING_NS // 2
+    assert desk.motions.path("execution-1").suffix == ".part"
+    desk.now += SETTLING_NS // 2 + 1
+    desk.recorder.process_round()
+    assert read_motion(tmp_path / "execution-1.mcap").states[-1].stopped
+    desk.recorder.begin(MotionHeader("execution-2", "puma560"))
+    desk.recorder.finish_at_rest()  # of an arm that says nothing any more
+    desk.now += STOPPING_NS + 1
+    desk.recorder.process_round()
+    assert desk.motions.path("execution-2").suffix == ".mcap"
     desk.recorder.stop()
 
 
