@@ -14,6 +14,7 @@ from teachpath.io.documents import decode, encode
 from teachpath.io.wire import decode_command, decode_lease_request, encode_lease, encode_status
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.records import CertificateQuery, ExecutorStatus, Job, JobState, JournalEntry, Plan, Scene, Signature
+from teachpath_proto.control import CommandVerb
 from teachpath_proto.keys import name_refusal
 from tests.contract.desk import API, Desk, csv, refused
 from tests.unit.io.test_documents import a_plan
@@ -36,7 +37,10 @@ def asking_executor(station: Station) -> Iterator[None]:
     """Answer starts as an executor does that finds every signature good: by what the service says of the plan."""
 
     def answer(payload: bytes) -> bytes:
-        plan = decode(Plan, decode_command(payload).plan)
+        command = decode_command(payload)
+        if command.verb is CommandVerb.REVOKE:
+            return encode_status(ExecutorStatus())
+        plan = decode(Plan, command.plan)
         assert plan.certificate.signature is not None
         query = CertificateQuery(plan.id, plan.certificate.signature.mac)
         station.bus.ask(station.keys.station_certificate, encode(query))

@@ -132,6 +132,7 @@ def test_a_start_that_is_not_answered_in_time_is_stopped_should_it_begin_later(d
 
 def test_an_order_to_an_executor_that_got_no_turn_for_a_while_is_answered_by_it(desk: Desk, moving: str) -> None:
     heard: list[Command] = []
+    plan = planned(desk.station, "plan-revoked-while-silent")
 
     def answer(payload: bytes) -> bytes:
         heard.append(wire.decode_command(payload))
@@ -140,6 +141,7 @@ def test_an_order_to_an_executor_that_got_no_turn_for_a_while_is_answered_by_it(
     wait_until(lambda: desk.station.executions.status is None, "the executor is silent")
     handle = desk.station.bus.serve(desk.station.keys.executor_command, answer)
     assert desk.post(f"/executions/{moving}/hold").is_success
+    assert desk.post(f"/plans/{plan}/revoke", {"reason": "the table was moved"}).is_success
     handle.close()
-    assert [command.verb for command in heard] == ["hold"]
+    assert [(command.verb, command.plan_id) for command in heard] == [("hold", ""), ("revoke", plan)]
     refused(desk.post(f"/executions/{moving}/hold"), 503, "nobody answered")

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from teachpath.errors import Conflict, NotFound, TeachpathError, Unanswered, UnusableInput
+from teachpath.errors import Conflict, NotFound, TeachpathError, Unanswered, Unreachable, UnusableInput
 from teachpath.io.bus import Bus
 from teachpath.io.documents import encode
 from teachpath.io.store.lists import Execution
@@ -211,12 +211,18 @@ class Executions:
 
         Raises:
             NotFound: no such plan.
+            Unreachable: the executor is there and has not heard it; the plan is revoked all the same.
         """
         stored = self._store.plan(plan)
         self._store.journal.revoke(stored.id, who=who, reason=reason)
-        if self.status is not None:  # also at rest: a start that is being answered ends before the revocation is heard
-            command = Command(CommandVerb.REVOKE, plan_id=stored.id, reason=reason, who=who)
+        command = Command(CommandVerb.REVOKE, plan_id=stored.id, reason=reason, who=who)
+        # Also at rest: a start that is being answered ends before the revocation is heard. And also an executor that is
+        # silent, for it may only have got no turn.
+        try:
             self._bus.ask(self._keys.executor_command, _message(command))
+        except Unreachable as error:
+            if self.status is not None or isinstance(error, Unanswered):
+                raise
 
     def get(self, execution: str) -> Execution:
         """Return an execution with its present status; raises NotFound."""
