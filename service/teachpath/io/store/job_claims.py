@@ -68,11 +68,14 @@ class JobClaims:
         return job_of(row)
 
     def to_break_off(self, keys: Sequence[str]) -> list[str]:
-        """Return those of the jobs of this service that somebody has cancelled, or that another service does now."""
+        """Return those of the jobs of this service that somebody has cancelled, or that another service does now.
+
+        What a dead service left is none of them: this one may be about to claim it.
+        """
         if not keys:
             return []
         cancelled = JobRow.cancel & JobRow.state.in_(UNFINISHED)
-        elsewhere = JobRow.service.not_in(("", self._services.id))
+        elsewhere = JobRow.service.not_in(("", self._services.id)) & ~self._services.is_left()
         with Session(self._engine) as session:
             return list(session.scalars(select(JobRow.id).where(JobRow.id.in_(keys), cancelled | elsewhere)))
 
