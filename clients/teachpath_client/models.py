@@ -985,6 +985,19 @@ class MeasuredCalibration:
 
 
 @dataclass(frozen=True)
+class MeshHull:
+    """The convex hull of a mesh, as a shape of a scene takes it.
+
+    Attributes:
+        file: its name
+        vertices: three corners a triangle, counter-clockwise from outside, in its units
+    """
+
+    file: str
+    vertices: list[tuple[float, float, float]]
+
+
+@dataclass(frozen=True)
 class MotionPreview:
     """The motion at full speed from the arm's home, at even instants.
 

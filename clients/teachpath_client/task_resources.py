@@ -12,6 +12,7 @@ from teachpath_client.models import (
     Health,
     Job,
     MeasuredCalibration,
+    MeshHull,
     ObjectPose,
     RecordingReport,
     Robot,
@@ -66,6 +67,15 @@ class TaskResources(Rest):
     def remove_scene(self, name: str) -> SceneVersion:
         """Remove a scene that no task is done in; its versions stay."""
         return self._ask(SceneVersion, "DELETE", f"/scenes/{name}")
+
+    def read_mesh(self, content: bytes, name: str) -> MeshHull:
+        """Return the convex hull of a mesh file (OBJ, STL), as a shape of a scene takes it.
+
+        Args:
+            content: of the file.
+            name: of the file; its end says what it is.
+        """
+        return self._ask(MeshHull, "POST", "/meshes", content=content, name=name)
 
     def get_object(self, scene: str) -> ObjectPose:
         """Return where the object of a scene lies."""

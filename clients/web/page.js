@@ -194,6 +194,7 @@ Object.assign(globalThis, {
     get editor() {
       return edit.editor;
     },
+    shapeDrag: () => scene.shapeDrag(),
     stand: () => (view.environment.stand.visible ? view.environment.stand.scale.z : 0),
     get draws() {
       return view.draws;

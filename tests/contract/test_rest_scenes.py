@@ -105,6 +105,28 @@ def test_a_scene_that_cannot_be_is_a_sentence_and_leaves_nothing(desk: Desk, bod
     refused(desk.put("/scenes/a%20b", {}), 422, "cannot name a scene")
 
 
+def test_a_mesh_file_comes_back_as_its_hull_and_nothing_of_it_is_kept(desk: Desk, name: str) -> None:
+    before = desk.station.transfers.names()
+    corners = [[x + 1 / 3, y, z] for x, y, z in [*CUBE, [20, 20, 20]]]
+    content = "".join(f"v {x} {y} {z}\n" for x, y, z in corners).encode()
+    hull = desk.post("/meshes", json=None, content=content, params={"name": "cube.obj"}).json()
+    assert (hull["file"], len(hull["vertices"])) == ("cube.obj", 36)
+    assert {tuple(corner) for corner in hull["vertices"]} == {(round(x, 5), y, z) for x, y, z in corners[:-1]}
+    assert desk.put(f"/scenes/{name}", {"obstacles": [BOX | {"kind": "mesh", "size": [0.001]} | hull]}).is_success
+    saved = desk.get(f"/scenes/{name}").json()["scene"]["obstacles"][0]
+    assert {tuple(corner) for corner in saved["vertices"]} == {tuple(corner) for corner in hull["vertices"]}
+    for file, sent, sentence in (
+        ("cube.step", content, "mesh cube.step ends in '.step'; known: .obj, .stl"),
+        ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n", "mesh flat.obj is flat"),
+        ("torn.stl", b"short", "mesh torn.stl is torn"),
+        ("empty.stl", b"", "empty.stl: the file is empty"),
+        ("", content, "name"),
+    ):
+        refused(desk.post("/meshes", json=None, content=sent, params={"name": file}), 422, sentence)
+    refused(desk.post("/meshes", json=None, content=content), 422, "name")
+    assert desk.station.transfers.names() == before
+
+
 def test_what_is_not_there_is_named(desk: Desk) -> None:
     for place in ("moon", "moon/versions", "moon/versions/1"):
         refused(desk.get(f"/scenes/{place}"), 404, "there is no scene 'moon'; known: paper, empty")

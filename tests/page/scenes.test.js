@@ -4,7 +4,9 @@ import { test } from "node:test";
 import {
   copyOf,
   freeName,
+  meshExtent,
   namesIn,
+  newMesh,
   newShape,
   PARTS,
   SceneDraft,
@@ -42,6 +44,22 @@ test("what is new lies on the table, has a name of its own, and is there alone",
     assert.deepEqual(SCENE.obstacles, [TABLE]); // the former scene is as it was
   }
   assert.equal(newShape({ ...SCENE, obstacles: [] }, "obstacles", "sphere").position[2], 0.05); // on the floor
+});
+
+test("a mesh stands on the table, in millimetres where it would be larger than a room", () => {
+  const corners = (size) => [0, size].flatMap((x) => [0, size].flatMap((y) => [0, size].map((z) => [x, y, z - size])));
+  for (const [size, unit] of [
+    [40, 0.001],
+    [0.04, 1],
+  ]) {
+    const shape = newMesh(SCENE, "carried", { file: "Part A (2).final.stl", vertices: corners(size) });
+    assert.deepEqual([shape.name, shape.kind, shape.size], ["Part-A-2-final", "mesh", [unit]]);
+    for (const extent of meshExtent(shape)) assert.ok(Math.abs(extent - 0.04) < 1e-12);
+    const off = shape.position.map((value, k) => Math.abs(value - [0.58, -0.02, 0.54][k]));
+    assert.ok(Math.max(...off) < 1e-12);
+  }
+  assert.equal(newMesh(SCENE, "obstacles", { file: "(1).stl", vertices: corners(1) }).name, "1");
+  assert.equal(newMesh(SCENE, "obstacles", { file: ".stl", vertices: corners(1) }).name, "mesh");
 });
 
 test("another object takes the place of the one that is there", () => {

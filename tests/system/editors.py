@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from teachpath.nurbs import Curve
+from tests.system.gizmos import pull_handle
 from tests.system.test_view import Visit
 
 U = np.linspace(0, 1, 301)
@@ -50,24 +51,7 @@ class Desk(Visit):
 
     def pull(self, handle: str, along: tuple[float, float, float]) -> None:
         """Drag a handle of the gizmo, X to Z or two of them for a plane, which lies that way from its middle."""
-        x, y = self.project("editor.selectionCenter")
-        ahead = self.project(f"editor.selectionCenter.map((value, i) => value + {list(along)}[i])")
-        way = np.subtract(ahead, (x, y))
-        way /= np.linalg.norm(way)
-        mouse, far = self.page.mouse, 0
-
-        def found() -> bool:
-            nonlocal far
-            for far in range(4, 90, 2):  # [px]
-                mouse.move(*(np.array([x, y]) + far * way))
-                if self.ask("editor.gizmo.controls.axis") == handle:
-                    return True
-            return False
-
-        self.wait(found, f"the pointer is on the handle {handle}")  # which lies where it was drawn last
-        mouse.down()
-        mouse.move(*(np.array([x, y]) + (far + 30) * way), steps=4)
-        mouse.up()
+        pull_handle(self, "teachpath.editor.gizmo", handle, along)
 
     def toggle(self, index: int) -> None:
         """Click a control point with Shift."""

@@ -16,6 +16,7 @@ from teachpath.io.documents import from_document
 from teachpath.nurbs import Curve
 from teachpath_client.models import Run
 from tests.system.access import barriers
+from tests.system.gizmos import pull_handle
 from tests.system.keyboard import tell_by_keyboard
 from tests.system.operators import Operator
 from tests.system.packages import Package
@@ -156,7 +157,7 @@ def rename_delete_and_undo(visit: Visit, service: Service) -> None:
 
 
 def edit_the_scene(visit: Visit, service: Service) -> None:
-    """Add a box to the scene `empty`, see it, and save it; undo that, and save it as another scene."""
+    """Add a box and a mesh to the scene `empty`, and save them; undo that, save another scene, and remove it."""
     page, message = visit.page, visit.page.locator("#message")
     tab(visit, "scene")
     page.wait_for_selector("#scene-state:has-text('This is version 1, of the settings')")
@@ -165,13 +166,19 @@ def edit_the_scene(visit: Visit, service: Service) -> None:
     page.locator("#shape-add").click()
     enter(visit, "#shape-position-x", "432.1")
     visit.wait(lambda: visit.place("/scene/box/<object>")[0, 3] == pytest.approx(0.4321))
-    enter(visit, "#shape-size-2", "-1")
-    message.locator(".error:has-text('must be a number from')").wait_for()
+    drag_the_shape(visit)
+    for field in ("#shape-size-2", "#scene-floor"):
+        enter(visit, field, "-20000")
+        message.locator(".error:has-text('-20000 must be a number from')").wait_for()
+    enter(visit, "#scene-floor", "-50")
+    add_a_mesh(visit)
     assert len(service.station.get_scene("empty").scene.obstacles) == 1  # only the page knows of it
     page.locator("#scene-save").click()
     message.get_by_text("Saved as version 2 of scene empty").wait_for()
-    box = service.station.get_scene("empty").scene.obstacles[1]
-    assert (box.name, box.kind) == ("box", "box")
+    scene = service.station.get_scene("empty").scene
+    box, part = scene.obstacles[1:]
+    assert (scene.floor, box.name, box.kind, part.name, part.kind) == (-0.05, "box", "box", "part", "mesh")
+    assert ([*part.position, *part.size], len(part.vertices)) == (pytest.approx([0.58, -0.02, 0.5, 0.001]), 36)
     assert [*box.position, *box.size] == pytest.approx([0.4321, 0.0, 0.55, 0.1, 0.1, 0.1])
     message.get_by_role("button", name="Undo").click()
     message.get_by_text("Scene empty is as it was before").wait_for()
@@ -184,8 +191,42 @@ def edit_the_scene(visit: Visit, service: Service) -> None:
     page.locator("#scene-save").click()
     message.get_by_text("Scene mine is made").wait_for()
     assert "mine" in [scene.name for scene in service.station.scenes()]
+    page.locator("#scene-remove").click()
+    message.get_by_text("Scene mine is removed").wait_for()
+    assert "mine" not in [scene.name for scene in service.station.scenes()]
+    message.get_by_role("button", name="Undo").click()
+    message.get_by_text("Scene mine is back").wait_for()
+    assert len(service.station.get_scene("mine").scene.obstacles) == 3
+    assert page.locator("#scene-name").input_value() == "mine"
     tab(visit, "run")  # the view shows what the task is done in again
     visit.wait(lambda: not any(path.startswith("/scene/box") for path in visit.paths()))
+
+
+def drag_the_shape(visit: Visit) -> None:
+    """Drag the chosen box along y by its arrow, and take that back."""
+    page = visit.page
+    places = [page.locator(f"#shape-position-{axis}") for axis in "xyz"]
+    before = [place.input_value() for place in places]
+    visit.draws_when_at_rest()  # the arrows are where they are drawn
+    pull_handle(visit, "teachpath.shapeDrag().gizmo", "Y", (0.0, 0.1, 0.0))
+    page.locator("#scene-undo[title='Undo moving box']").wait_for()
+    after = [place.input_value() for place in places]
+    assert float(after[1]) > float(before[1])
+    assert after[::2] == before[::2]
+    page.locator("#scene-undo").click()
+    visit.wait(lambda: places[1].input_value() == before[1])
+
+
+def add_a_mesh(visit: Visit) -> None:
+    """Add a cube of 40 mm whose corner is the origin of its file."""
+    page = visit.page
+    cube = "".join(f"v {x} {y} {z}\n" for x in (0, 40) for y in (0, 40) for z in (0, 40)).encode()
+    page.select_option("#shape-kind", label="a mesh from a file")
+    with page.expect_file_chooser() as chooser:
+        page.locator("#shape-add").click()
+    chooser.value.set_files({"name": "part.obj", "mimeType": "model/obj", "buffer": cube})
+    page.locator("#message").get_by_text("part.obj is 40 × 40 × 40 mm").wait_for()
+    visit.wait(lambda: any(path.startswith("/scene/part") for path in visit.paths()))
 
 
 def enter(visit: Visit, field: str, value: str) -> None:

@@ -5,6 +5,7 @@ import { icon } from "../icons.js";
 import { missingSentence } from "../identity.js";
 import { patchChildren } from "../patch_children.js";
 import { SceneDraft, shapeAt, withShape } from "../scenes/scene_draft.js";
+import { SceneFloor } from "../scenes/scene_floor.js";
 import { SceneSaving } from "../scenes/scene_saving.js";
 import { sceneVersions } from "../scenes/scene_versions.js";
 import { ShapeDrag } from "../scenes/shape_drag.js";
@@ -22,7 +23,7 @@ const UNCHANGED = "Nothing was changed since this version.";
 /** @type {ScenePanel | null} */
 let scenes = null;
 
-/** @type {Panel} */
+/** @type {Panel & {shapeDrag: () => ShapeDrag | undefined}} */
 export const panel = {
   id: "scene",
   title: "Scene",
@@ -32,6 +33,7 @@ export const panel = {
   update: (state, changed) => scenes?.update(state, changed),
   show: () => scenes?.show(),
   hide: () => scenes?.hide(),
+  shapeDrag: () => scenes?.drag,
 };
 
 class ScenePanel {
@@ -52,17 +54,21 @@ class ScenePanel {
     this.context = context;
     this.head = headParts(section(place, "scene-choice", "Scene"));
     const scene = () => this.#draft?.scene ?? null;
-    this.list = new ShapeList(section(place, "scene-parts", "What it is made of"), {
+    const refuse = (/** @type {string} */ sentence) => context.messages.show(sentence, "error");
+    const parts = section(place, "scene-parts", "What it is made of");
+    this.list = new ShapeList(parts, {
       scene,
       choose: (chosen) => this.#choose(chosen),
       change: (changed, what, chosen) => this.#change(changed, what, chosen),
+      tell: (sentence) => context.messages.show(sentence),
+      attempt: context.attempt,
     });
+    this.floor = new SceneFloor(parts, { scene, change: (all, what) => this.#change(all, what, this.#chosen), refuse });
     /** @param {Shape} shape @param {string} what */
     const change = (shape, what) => {
       if (this.#draft && this.#chosen)
         this.#change(withShape(this.#draft.scene, this.#chosen, shape), what, this.#chosen);
     };
-    const refuse = (/** @type {string} */ sentence) => context.messages.show(sentence, "error");
     this.fields = new ShapeFields(section(place, "scene-shape", "The chosen shape"), { scene, change, refuse });
     this.drag = new ShapeDrag(context.overlay, { change, preview: (shape) => this.#preview(shape) });
     const saving = section(place, "scene-saving", "Save");
@@ -128,9 +134,16 @@ class ScenePanel {
     });
   }
 
-  /** Read which scenes there are, and the one that is looked at: what was changed in it, else its newest version. */
+  /** Read which scenes there are, and the one that is looked at; what does not count any more may fail. */
   async #read() {
     const request = ++this.#reads;
+    await this.#readAs(request).catch((error) => {
+      if (request === this.#reads && !this.saving.isBusy) throw error; // else the scene may just have been removed
+    });
+  }
+
+  /** What was changed in the scene that is looked at, else its newest version. @param {number} request */
+  async #readAs(request) {
     /** @type {Scene[]} */
     const all = await get("scenes");
     const names = all.map(({ name }) => name);
@@ -189,14 +202,16 @@ class ScenePanel {
   #render() {
     const draft = this.#draft;
     const shape = draft && shapeAt(draft.scene, this.#chosen);
-    const { state, undo, redo, revert } = this.head;
+    const { select, state, undo, redo, revert } = this.head;
     state.textContent = draft ? stateText(draft, this.#versions) : "The scene is being read …";
     block(undo, draft?.undoLabel ? "" : "There is no step to undo.", `Undo ${draft?.undoLabel}`);
     block(redo, draft?.redoLabel ? "" : "No step was undone.", `Redo ${draft?.redoLabel}`);
     block(revert, draft?.isEdited ? "" : UNCHANGED);
     this.list.show(draft?.scene ?? null, this.#chosen);
     this.fields.show(shape, this.#chosen?.part ?? null);
-    this.saving.show(draft, missingSentence(this.context.store.state.identity, ["teach"]));
+    this.floor.show(draft?.scene ?? null);
+    const missing = missingSentence(this.context.store.state.identity, ["teach"]);
+    this.saving.show(draft, missing, select.options.length < 2);
     patchChildren(this.versions, sceneVersions(this.#versions, draft?.base ?? 0));
     if (!this.#isShown) return;
     this.context.sceneLayers.preview(draft?.scene ?? null, shape);

@@ -13,6 +13,7 @@ export const PARTS = ["obstacles", "carried", "keep_in", "keep_out"];
 const SIZES = { box: [0.1, 0.1, 0.1], cylinder: [0.05, 0.1], sphere: [0.05] }; // of what is new [m]
 const OBJECT_SIZES = { box: [0.04, 0.04, 0.04], cylinder: [0.02, 0.06], sphere: [0.02] }; // between the gripper's fingers [m]
 const CAGE_SIZE = [3, 3, 3]; // around any arm that stands on the floor [m]
+const LARGEST_IN_METRES = 10; // a mesh with a larger extent has millimetres for units
 const BESIDE_THE_ARM = 0.5; // ahead of it [m]
 const COLORS = { obstacles: 0x7c8896, carried: 0xe8c547, keep_in: 0x2a8f5a, keep_out: 0xd62718 };
 /** @type {Record<Part, string>} */
@@ -157,6 +158,55 @@ export function newShape(scene, part, kind) {
     vertices: [],
     mass: null,
   };
+}
+
+/**
+ * A mesh from a file: it stands on the first thing in the scene; the file does not say in which unit it is.
+ * @param {Scene} scene
+ * @param {Part} part
+ * @param {MeshHull} mesh
+ * @returns {Shape}
+ */
+export function newMesh(scene, part, { file, vertices }) {
+  const [low, high] = extremes(vertices);
+  const unit = Math.max(...high.map((value, k) => value - low[k])) > LARGEST_IN_METRES ? 0.001 : 1;
+  const [x, y, ground] = restingPlace(scene);
+  const middle = low.map((value, k) => (value + high[k]) / 2);
+  return {
+    name: freeName(scene, nameOfFile(file)),
+    kind: "mesh",
+    size: [unit],
+    position: [x - unit * middle[0], y - unit * middle[1], ground - unit * low[2]],
+    color: COLORS[part],
+    orientation: [1, 0, 0, 0],
+    file,
+    vertices,
+    mass: null,
+  };
+}
+
+/** How large a mesh is along its own axes [m]. @param {Shape} shape */
+export function meshExtent({ size: [unit], vertices }) {
+  const [low, high] = extremes(vertices);
+  return high.map((value, k) => unit * (value - low[k]));
+}
+
+/** The least and the largest of each coordinate. @param {Point[]} points */
+function extremes(points) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (const point of points)
+    for (const k of [0, 1, 2]) {
+      low[k] = Math.min(low[k], point[k]);
+      high[k] = Math.max(high[k], point[k]);
+    }
+  return [low, high];
+}
+
+/** A name for what a file holds: the file's own, as far as it may be one. @param {string} file */
+function nameOfFile(file) {
+  const stem = file.replace(/\.[^.]*$/, "").replace(/[^A-Za-z0-9]+/g, "-");
+  return stem.replace(/^-|-$/g, "").slice(0, 60) || "mesh";
 }
 
 /** The middle of the table's top, or a place on the floor. @param {Scene} scene @returns {[number, number, number]} */

@@ -1,5 +1,5 @@
-// Saving a scene: under which name, by whom and why; every saving can be undone.
-import { put, remove, resourcePath } from "../api.js";
+// Saving a scene: under which name, by whom and why; and removing it. Each can be undone.
+import { get, put, remove, resourcePath } from "../api.js";
 import { block, element } from "../elements.js";
 import { icon } from "../icons.js";
 import { isName, nameRefusal } from "../names.js";
@@ -9,6 +9,7 @@ import { sceneBody } from "./scene_draft.js";
 
 const PLANS = "Ways that were certified in the version before do not start in this one: certify them again.";
 const FORM = "scene-form";
+const LAST = "A station needs a scene: make another one first.";
 const UNCHANGED = "Nothing was changed since this version.";
 const AUTHOR_KEY = "operator"; // who works at this browser, also for control of the arm
 
@@ -43,12 +44,17 @@ export class SceneSaving {
       { id: FORM, class: "saving" },
       fields.map(([text, input]) => element("label", {}, text, input)),
     );
-    place.append(form);
+    this.removal = element("button", { type: "button", id: "scene-remove" }, "Remove the scene");
+    place.append(form, element("p", { class: "buttons" }, this.removal));
     foot.append(this.button);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       const { draft } = this;
       if (draft) attempt(() => this.#save(draft));
+    });
+    this.removal.addEventListener("click", () => {
+      const { draft } = this;
+      if (draft) attempt(() => this.#remove(draft));
     });
   }
 
@@ -57,11 +63,16 @@ export class SceneSaving {
     return this.draft !== null && this.name.value.trim() !== this.draft.name;
   }
 
-  /** @param {SceneDraft | null} draft @param {string} missing what somebody may not do here; "": nothing */
-  show(draft, missing) {
+  /**
+   * @param {SceneDraft | null} draft
+   * @param {string} missing what somebody may not do here; "": nothing
+   * @param {boolean} isLast whether there is no other scene
+   */
+  show(draft, missing, isLast) {
     if (draft && draft.name !== this.draft?.name) this.name.value = draft.name;
     this.draft = draft;
     block(this.button, missing || (draft?.isEdited || this.isOther ? "" : UNCHANGED));
+    block(this.removal, missing || (isLast ? LAST : ""));
     this.verb.data = this.isOther ? "Save as another scene" : "Save version";
   }
 
@@ -95,6 +106,31 @@ export class SceneSaving {
     };
     const said = isOther ? `Scene ${wanted} is made.` : `Saved as version ${saved.number} of scene ${wanted}. ${PLANS}`;
     this.messages.show(said, "note", { label: "Undo", order: undo });
+  }
+
+  /** Remove a scene as the service has it. @param {SceneDraft} draft what was changed in it waits */
+  async #remove(draft) {
+    const place = resourcePath("scenes", draft.name);
+    await this.#order(() => remove(place));
+    await this.reopen("");
+    const undo = async () => {
+      await this.#order(async () => {
+        /** @type {SceneVersion[]} */
+        const versions = await get(`${place}/versions`);
+        const former = versions.find(({ removed }) => !removed)?.number ?? draft.base;
+        /** @type {SavedScene} */
+        const { scene } = await get(`${place}/versions/${former}`);
+        const details = { author: this.author.value, note: `version ${former} again`, base: versions[0].number };
+        const { number } = await put(place, sceneBody(scene, details));
+        if (draft.base === former) draft.saved(number, scene);
+      });
+      await this.reopen(draft.name);
+      this.messages.show(`Scene ${draft.name} is back.`);
+    };
+    this.messages.show(`Scene ${draft.name} is removed; its versions are kept.`, "note", {
+      label: "Undo",
+      order: undo,
+    });
   }
 
   /** @template T @param {() => Promise<T>} order after which the draft knows what the service has */

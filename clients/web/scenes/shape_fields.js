@@ -13,7 +13,7 @@ const SIZES = {
   mesh: ["metres a unit"],
 };
 const AXES = ["x", "y", "z"];
-const MAX_LENGTH = 10_000; // [mm] the service accepts no more
+export const MAX_LENGTH = 10_000; // [mm] the service accepts no more
 const NOTHING = "Choose a shape in the list, or add one: its numbers stand here, and arrows in the view move it.";
 
 /**
@@ -56,7 +56,7 @@ export class ShapeFields {
     );
     place.append(this.nothing, this.parts);
     this.color.setAttribute("aria-label", "Colour");
-    for (const input of this.inputs) input.addEventListener("input", () => (input.dataset.typed = "")); // until it is entered
+    this.inputs.forEach(watchTyping);
     place.addEventListener("change", ({ target }) => {
       if (!(target instanceof HTMLInputElement) || !this.shape) return;
       delete target.dataset.typed;
@@ -119,8 +119,11 @@ export class ShapeFields {
   }
 }
 
-/** @param {HTMLInputElement} input @param {string} value */
-function writeInput(input, value) {
+/** Note that somebody types in a field, until that is entered. @param {HTMLInputElement} input */
+export const watchTyping = (input) => input.addEventListener("input", () => (input.dataset.typed = ""));
+
+/** Show a value, unless somebody types another. @param {HTMLInputElement} input @param {string} value */
+export function writeInput(input, value) {
   if (input === document.activeElement && "typed" in input.dataset) return; // whatever comes meanwhile
   if (input.value !== value) input.value = value;
 }

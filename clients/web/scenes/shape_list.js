@@ -1,6 +1,17 @@
 // What a scene is made of: a list to choose from, and what is added, copied and taken away.
+import { upload } from "../api.js";
 import { block, element, option } from "../elements.js";
-import { copyOf, newShape, PARTS, shapeAt, shapesOf, withNewShape, withoutShape } from "./scene_draft.js";
+import {
+  copyOf,
+  meshExtent,
+  newMesh,
+  newShape,
+  PARTS,
+  shapeAt,
+  shapesOf,
+  withNewShape,
+  withoutShape,
+} from "./scene_draft.js";
 
 /** @typedef {import("./scene_draft.js").Part} Part */
 /** @typedef {import("./scene_draft.js").Place} Place */
@@ -13,13 +24,15 @@ const TITLES = {
   keep_out: "Zones that the arm stays out of",
 };
 
-/** What can be added: its words, the part that it belongs to, its kind. @type {[string, Part, "box" | "cylinder" | "sphere"][]} */
+/** What can be added: its words, the part that it belongs to, its kind. @type {[string, Part, "box" | "cylinder" | "sphere" | "mesh"][]} */
 const ADDITIONS = [
   ["a box", "obstacles", "box"],
   ["a cylinder", "obstacles", "cylinder"],
   ["a sphere", "obstacles", "sphere"],
+  ["a mesh from a file", "obstacles", "mesh"],
   ["a box to carry", "carried", "box"],
   ["a cylinder to carry", "carried", "cylinder"],
+  ["a mesh to carry, from a file", "carried", "mesh"],
   ["a box to stay inside", "keep_in", "box"],
   ["a box to stay out of", "keep_out", "box"],
   ["a cylinder to stay out of", "keep_out", "cylinder"],
@@ -30,7 +43,8 @@ export class ShapeList {
   /**
    * @param {HTMLElement} place
    * @param {{scene: () => Scene | null, choose: (place: Place | null) => void,
-   *          change: (scene: Scene, what: string, place: Place | null) => void}} editor
+   *          change: (scene: Scene, what: string, place: Place | null) => void,
+   *          tell: (sentence: string) => void, attempt: Context["attempt"]}} editor
    */
   constructor(place, editor) {
     this.editor = editor;
@@ -42,12 +56,18 @@ export class ShapeList {
     this.addButton = element("button", { type: "button", id: "shape-add" }, "Add");
     this.copyButton = element("button", { type: "button", id: "shape-copy" }, "Duplicate");
     this.removeButton = element("button", { type: "button", id: "shape-remove" }, "Remove");
+    this.file = element("input", { type: "file", hidden: "", accept: ".stl,.obj", "aria-label": "Mesh to add" });
     place.append(
+      this.file,
       this.list,
       element("p", { class: "buttons" }, this.kinds, this.addButton, this.copyButton, this.removeButton),
     );
     this.list.addEventListener("change", () => editor.choose(placeOf(this.list.value)));
     this.addButton.addEventListener("click", () => this.#add());
+    this.file.addEventListener("change", () => {
+      const file = this.file.files?.[0];
+      if (file) editor.attempt(() => this.#addMesh(file)).finally(() => (this.file.value = ""));
+    });
     this.copyButton.addEventListener("click", () => this.#copy());
     this.removeButton.addEventListener("click", () => this.#remove());
   }
@@ -67,8 +87,23 @@ export class ShapeList {
     const [text, part, kind] = ADDITIONS[Number(this.kinds.value)];
     const scene = this.editor.scene();
     if (!scene) return;
+    if (kind === "mesh") return this.file.click();
     const made = withNewShape(scene, part, newShape(scene, part, kind));
     this.editor.change(made.scene, `adding ${text}`, made.place);
+  }
+
+  /** @param {File} file whose convex hull the service reads */
+  async #addMesh(file) {
+    const [, part] = ADDITIONS[Number(this.kinds.value)];
+    const name = this.editor.scene()?.name;
+    /** @type {MeshHull} */
+    const mesh = await upload(`meshes?name=${encodeURIComponent(file.name)}`, file);
+    const scene = this.editor.scene();
+    if (!scene || scene.name !== name) return; // another one is looked at meanwhile
+    const shape = newMesh(scene, part, mesh);
+    const made = withNewShape(scene, part, shape);
+    this.editor.change(made.scene, `adding ${file.name}`, made.place);
+    this.editor.tell(meshSentence(shape));
   }
 
   #copy() {
@@ -90,6 +125,13 @@ export class ShapeList {
     const scene = this.editor.scene();
     return [scene, scene && shapeAt(scene, this.chosen)];
   }
+}
+
+/** @param {Shape} mesh */
+function meshSentence(mesh) {
+  const sizes = meshExtent(mesh).map((metres) => Number((1000 * metres).toPrecision(3)));
+  const unit = mesh.size[0] === 1 ? "metres" : "millimetres";
+  return `${mesh.file} is ${sizes.join(" × ")} mm, as its convex hull, when its numbers are ${unit}; "metres a unit" says otherwise.`;
 }
 
 /** @param {Place} place */

@@ -19,7 +19,7 @@ MAX_DOCUMENT_SIZE: Final = 1024 * 1024  # bytes of a request that is no upload
 MIN_UPLOAD_RATE: Final = 1000.0  # [bytes/s] of a body, after the time that every request has
 SAFE_METHODS: Final = ("GET", "HEAD", "OPTIONS")
 STOP: Final = re.compile(r"/api/v1/(executions/[^/]+/)?stop")  # never refused for what else is asked for
-UPLOADS: Final = ("/demonstrations", "/uploads")  # ends of the paths that take whole files
+UPLOADS: Final = ("/demonstrations", "/uploads", "/meshes")  # ends of the paths that take whole files
 
 
 class RequestLimits:

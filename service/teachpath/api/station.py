@@ -29,6 +29,7 @@ from teachpath.api.joints import joints_router
 from teachpath.api.limits import LimitSubjects
 from teachpath.api.live_description import live_description
 from teachpath.api.loopback_only import LoopbackOnly
+from teachpath.api.meshes import meshes_router
 from teachpath.api.metrics import RequestMetrics, metrics_router, new_registry
 from teachpath.api.middleware import AnswersAtTheEnd, HeadRequests, RequestLimits
 from teachpath.api.objects import objects_router
@@ -158,6 +159,7 @@ ROUTERS: Final = (  # of the REST API, in the order of its description
     curves_router,
     adaptations_router,
     scenes_router,
+    meshes_router,
     objects_router,
     assessments_router,
     executions_router,

@@ -18,19 +18,24 @@ HEADER: Final = 84  # bytes before the triangles of a binary STL: a comment and 
 TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def read_hull(file: Path) -> tuple[Vector, ...]:
+def read_hull(file: Path, name: str = "") -> tuple[Vector, ...]:
     """Return the convex hull of a mesh in the file's units: three corners a triangle, counter-clockwise from outside.
+
+    Args:
+        file: to read.
+        name: that the mesh goes by, whose end says what it is; that of the file when empty.
 
     Raises:
         UnusableInput: the file is missing, too large, neither OBJ nor STL, torn, or flat.
     """
+    name = name or str(file)
     try:
         if file.stat().st_size > LARGEST:
-            raise UnusableInput(f"mesh {file} has {file.stat().st_size} bytes, limit {LARGEST}; simplify it")
+            raise UnusableInput(f"mesh {name} has {file.stat().st_size} bytes, limit {LARGEST}; simplify it")
         content = file.read_bytes()
     except OSError as error:
-        raise UnusableInput(f"cannot read the mesh {file}: {error.strerror}") from None
-    return convex_hull(_corners(content, file), str(file))
+        raise UnusableInput(f"cannot read the mesh {name}: {error.strerror}") from None
+    return convex_hull(_corners(content, name), name)
 
 
 def convex_hull(corners: ArrayLike, name: str) -> tuple[Vector, ...]:
@@ -59,27 +64,27 @@ def convex_hull(corners: ArrayLike, name: str) -> tuple[Vector, ...]:
     return tuple((float(x), float(y), float(z)) for x, y, z in triangles.reshape(-1, 3))
 
 
-def _corners(content: bytes, file: Path) -> NDArray[np.float64]:
-    kind = file.suffix.lower()
+def _corners(content: bytes, name: str) -> NDArray[np.float64]:
+    kind = Path(name).suffix.lower()
     if kind == ".obj":
         found = re.findall(rb"^v\s+(\S+)\s+(\S+)\s+(\S+)", content, re.MULTILINE)
     elif kind == ".stl" and content[:5] == b"solid" and b"facet" in content[:1000]:
         found = re.findall(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)", content, re.MULTILINE)
     elif kind == ".stl":
-        return _binary_stl(content, file)
+        return _binary_stl(content, name)
     else:
-        raise UnusableInput(f"mesh {file} ends in {kind!r}; known: .obj, .stl")
+        raise UnusableInput(f"mesh {name} ends in {kind!r}; known: .obj, .stl")
     try:
         return np.array(found, dtype=np.float64).reshape(-1, 3)
     except ValueError:
-        raise UnusableInput(f"mesh {file} has a corner that is no number") from None
+        raise UnusableInput(f"mesh {name} has a corner that is no number") from None
 
 
-def _binary_stl(content: bytes, file: Path) -> NDArray[np.float64]:
+def _binary_stl(content: bytes, name: str) -> NDArray[np.float64]:
     count = int.from_bytes(content[HEADER - 4 : HEADER], "little")
     if len(content) < HEADER or len(content) != HEADER + count * TRIANGLE.itemsize:
         raise UnusableInput(
-            f"mesh {file} is torn: {count} triangles need {HEADER + 50 * count} bytes, {len(content)} are there"
+            f"mesh {name} is torn: {count} triangles need {HEADER + 50 * count} bytes, {len(content)} are there"
         )
     triangles = np.frombuffer(content, TRIANGLE, offset=HEADER)
     return triangles["corners"].reshape(-1, 3).astype(np.float64)

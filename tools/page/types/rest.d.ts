@@ -25,6 +25,7 @@ declare global {
   type LeaseState = Schemas["Lease"];
   type JointGeometry = Schemas["JointGeometry"];
   type MeasuredCalibration = Schemas["MeasuredCalibration"];
+  type MeshHull = Schemas["MeshHull"];
   type MotionPreview = Schemas["MotionPreview"];
   type Plan = Schemas["Plan"];
   type PlanSummary = Schemas["PlanSummary"];
