@@ -22,13 +22,16 @@ class Proxy:
         self._sockets: list[socket.socket] = []
         self._closed = False
         self._cut = False
-        threading.Thread(target=self._accept, daemon=True).start()
+        self._acceptor = threading.Thread(target=self._accept, daemon=True)
+        self._acceptor.start()
 
     def __enter__(self) -> "Proxy":
         return self
 
     def __exit__(self, *_: object) -> None:
         self._closed = True
+        self._server.shutdown(socket.SHUT_RDWR)  # wakes the acceptor, who may be about to connect
+        self._acceptor.join()
         self._server.close()
         self.drop()
         self.go_on()
@@ -39,8 +42,8 @@ class Proxy:
 
     def drop(self, *, cut: bool = False) -> None:
         """Break every connection, with all that is under way; with `cut` refuse new ones until `go_on`."""
-        self._cut = cut
         with self._lock:
+            self._cut = cut
             broken, self._sockets = self._sockets, []
         for each in broken:
             with contextlib.suppress(OSError):
@@ -67,7 +70,12 @@ class Proxy:
                 client.close()
                 continue
             with self._lock:
-                self._sockets += [client, server]
+                if is_open := not self._cut:  # it may have been cut meanwhile
+                    self._sockets += [client, server]
+            if not is_open:
+                client.close()
+                server.close()
+                continue
             for one, other in ((client, server), (server, client)):
                 threading.Thread(target=self._pump, args=(one, other), daemon=True).start()
 

@@ -56,6 +56,7 @@ class CommandHandler:
         current: the execution under way, or the one that ended last; None before the first.
         pending: what the control loop does to the current execution in its next period.
         status_is_due: whether a stop came since the control loop has published the status.
+        stop_came: set when a stop has come that the control loop, at rest, is to confirm in its next period.
     """
 
     def __init__(
@@ -86,13 +87,19 @@ class CommandHandler:
         self._received_stops: deque[bytes] = deque(maxlen=MAX_WAITING_STOPS)
         self._known_stops: deque[str] = deque(maxlen=KNOWN_STOPS)
         self.status_is_due: bool = False
+        self.stop_came: threading.Event = threading.Event()
         self.lease: ControlLease = ControlLease(time_source.monotonic_ns)
         self.current: Execution | None = None
         self.pending: deque[Callable[[Execution], None]] = deque()
 
     def receive_stops(self) -> Handle:
         """Receive the stops that are put from now on; the control loop obeys them."""
-        return self._bus.subscribe(self._keys.executor_stop, lambda _, payload: self._received_stops.append(payload))
+
+        def receive(_: str, payload: bytes) -> None:
+            self._received_stops.append(payload)
+            self.stop_came.set()
+
+        return self._bus.subscribe(self._keys.executor_stop, receive)
 
     def serve(self) -> list[Handle]:
         """Answer commands, stops and lease requests from now on."""
@@ -134,6 +141,7 @@ class CommandHandler:
 
     def obey_stops(self) -> None:
         """Obey the stops that were put; called by the control loop."""
+        self.stop_came.clear()
         for _ in range(min(len(self._received_stops), STOPS_A_PERIOD)):
             try:
                 self._answer_stop(self._received_stops.popleft())
@@ -227,6 +235,7 @@ class CommandHandler:
         with self._lock:
             self._stop_count += 1
             stopped, self.status_is_due = self.current, True
+        self.stop_came.set()
         if stopped is None or command.execution not in ("", stopped.id):
             return
         reason = "stopped by the operator" if who == DEFAULT_OPERATOR else f"stopped by {who}"

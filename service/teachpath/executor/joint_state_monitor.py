@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,6 +18,18 @@ log: logging.Logger = logging.getLogger(__name__)
 
 REFUSAL_INTERVAL_NS: Final = 1_000_000_000  # [ns] between two words in the log about states that cannot be used
 MAX_LISTENED_NS: Final = 50_000_000  # [ns] of silence that one look counts at most: who oversleeps hears nothing
+
+# [ns] of listening after which a driver that is announced no more has ended, if this session still has a line: where
+# that is cut, all that was announced goes some milliseconds before the line itself is known to be gone.
+LOSS_TIME_NS: Final = 100_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Absence:
+    """Why nothing is heard of an arm, as the beginning of a sentence, and whether its execution ends by that."""
+
+    reason: str
+    is_final: bool
 
 
 class JointStateMonitor:
@@ -44,13 +57,17 @@ class JointStateMonitor:
         self._looked_ns = clock()
         self._refused_ns = -REFUSAL_INTERVAL_NS  # when a joint state was last said to be refused
         self._lost_ns = -1  # when its driver left: what came before is no state of the next one
+        self._lost_listened_ns = 0  # `listened_ns` when that was noticed first
         self.has_lost_driver: bool = False
         self.listened_ns: int = 0
 
     def on_liveliness(self, _: str, alive: bool) -> None:
         """Take note of a driver that comes or goes."""
-        if not alive:
-            self._lost_ns, self.has_lost_driver = self._clock(), True
+        if alive:
+            return
+        if not self.has_lost_driver:
+            self._lost_listened_ns = self.listened_ns
+        self._lost_ns, self.has_lost_driver = self._clock(), True
 
     def receive(self, _: str, payload: bytes) -> None:
         """Take a message from the bus; `poll` decodes it, on the caller's thread."""
@@ -81,6 +98,25 @@ class JointStateMonitor:
             return None
         came_ns, listened_ns, state = newest
         return min(now - came_ns, self.listened_ns - listened_ns) / 1e9, state
+
+    def absence(self, now: int, timeout: float, is_joined: Callable[[], bool]) -> Absence:
+        """Say why nothing is heard of the arm at `now` [ns].
+
+        Args:
+            timeout: for which it may be silent [s].
+            is_joined: tells whether this session has a line to the bus.
+        """
+        if not self.has_lost_driver:
+            latest = self.latest(now)
+            silence = latest[0] if latest else 0.0
+            is_final = silence > timeout
+            length = f"{silence:.{1 if is_final else 2}f} s"
+            return Absence(f"no joint state for {length}: is the arm's driver running?", is_final)
+        if self.listened_ns - self._lost_listened_ns < LOSS_TIME_NS:
+            return Absence(f"nothing is heard of the driver of {self.robot} any more: is it running?", False)
+        if is_joined():
+            return Absence(f"the driver of {self.robot} has ended:", True)
+        return Absence("the executor's own line to the bus is cut, and nothing is heard of the arm:", True)
 
     def current(self) -> JointState:
         """Return the arm's present joint state.

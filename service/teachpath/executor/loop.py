@@ -122,8 +122,10 @@ class Executor:
             while not (stop.is_set() and handler.is_resting):
                 if stop.is_set() and handler.current is not None:
                     handler.current.end(ExecutorState.ENDED, "the executor was told to stop")
-                resting = handler.is_resting
-                self._cycle(self._pacer.wait(IDLE_PERIODS if resting else 1, counted=not resting))
+                if handler.is_resting:
+                    self._cycle(self._pacer.wait(IDLE_PERIODS, counted=False, woken=handler.stop_came))
+                else:
+                    self._cycle(self._pacer.wait())
         finally:
             gc.enable()
             gc.unfreeze()
@@ -189,19 +191,13 @@ class Executor:
         return latest[1]
 
     def _supervise_silence(self, current: Execution, due: int) -> None:
-        """Hold an arm that is silent; end its execution when it stays so, and at once when its driver has ended."""
+        """Hold an arm that is silent; end its execution when it stays so, and soon when its driver has ended."""
         current.arm_stops = False  # nobody says any more that it comes to rest
-        latest = self._joint_states.latest(due)
-        silence = latest[0] if latest else 0.0
-        if self._joint_states.has_lost_driver:
-            why = f"the driver of {self._robot} has ended"
-            current.end(ExecutorState.FAULTED, f"{why}: look where the arm stands, then start again")
-        elif silence > self._settings.silence_timeout:
-            why = f"no joint state for {silence:.1f} s: is the arm's driver running?"
-            current.end(ExecutorState.FAULTED, f"{why} look where the arm stands, then start again")
+        absence = self._joint_states.absence(due, self._settings.silence_timeout, self._bus.is_joined)
+        if absence.is_final:
+            current.end(ExecutorState.FAULTED, f"{absence.reason} look where the arm stands, then start again")
         else:
-            why = f"no joint state for {silence:.2f} s"
-            self._hold(current, f"{why}: is the arm's driver running? resume when it is back")
+            self._hold(current, f"{absence.reason} resume when it is back")
 
     def _supervise_arm(self, current: Execution, arm: JointState, due: int) -> None:
         if arm.fault:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from typing import Final
 
@@ -36,7 +37,7 @@ class Pacer:
     def __init__(self, period_ns: int, time_source: TimeSource) -> None:
         self._period = period_ns
         self._clock = time_source.monotonic_ns
-        self._sleep = time_source.sleep
+        self._sleep, self._doze = time_source.sleep, time_source.wait
         self._due = self._clock()
         self.reset()
 
@@ -48,14 +49,20 @@ class Pacer:
         self._largest = 0.0
         self._counts = np.zeros(MAX_COUNTED_LATENESS_US + 1, dtype=np.int64)  # one bin a microsecond
 
-    def wait(self, periods: int = 1, *, counted: bool = True) -> int:
+    def wait(self, periods: int = 1, *, counted: bool = True, woken: threading.Event | None = None) -> int:
         """Sleep until the deadline that lies `periods` ahead, and return it [ns of the clock].
 
         Args:
             counted: whether this cycle enters the statistics.
+            woken: once it is set, the next deadline is waited for, and none beyond it.
         """
         self._due += periods * self._period
         ahead = self._due - self._clock()
+        if woken is not None and ahead > self._period:
+            self._doze(woken, ahead / 1e9)
+            if woken.is_set():
+                self._due -= max(self._due - self._clock() - 1, 0) // self._period * self._period
+            ahead = self._due - self._clock()
         if ahead > 0:
             self._sleep(ahead / 1e9)
         behind = max(self._clock() - self._due, 0)

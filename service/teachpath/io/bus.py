@@ -17,10 +17,10 @@ from typing import Any, Protocol
 import zenoh
 import zenoh.ext
 
-from teachpath import errors
 from teachpath.errors import TeachpathError, Unanswered, Unreachable, UnusableSettings
 from teachpath.io.bus_access import BusAccess, listening_config
 from teachpath.io.bus_config import read_bus_config
+from teachpath.io.bus_errors import pack_error, raise_again
 from teachpath.io.bus_settings import BusSettings
 from teachpath_proto.logins import Login
 from teachpath_proto.sessions import joining, listening, open_session
@@ -79,6 +79,9 @@ class Bus(Protocol):
 
     def watch(self, key: str, changed: Changed) -> Handle:
         """Call `changed(key, alive)` when a part under `key` comes or goes; parts already there come first."""
+
+    def is_joined(self) -> bool:
+        """Tell whether there is a line to any other session."""
 
     def close(self) -> None:
         """Take back every declaration and leave."""
@@ -206,7 +209,7 @@ class ZenohBus:
                 payload = reply.err.payload.to_bytes()
                 if payload == TIMED_OUT:
                     raise Unanswered(f"{key} was not answered within {timeout:g} s; is that part of the service busy?")
-                _raise_again(payload, key)
+                raise_again(payload, key)
         raise Unreachable(f"nobody answered {key} within {timeout:g} s; is that part of the service running?")
 
     def announce(self, key: str) -> Handle:
@@ -219,6 +222,10 @@ class ZenohBus:
             key, lambda s: changed(str(s.key_expr), s.kind == zenoh.SampleKind.PUT), history=True
         )
         return self._keep(Declaration(subscriber.undeclare))
+
+    def is_joined(self) -> bool:
+        """Tell whether there is a line to any other session; not to be called by a receiver."""
+        return bool(self._session.info.routers_zid() or self._session.info.peers_zid())
 
     def close(self) -> None:
         """Take back every declaration, and close the session; a second call does nothing."""
@@ -272,9 +279,9 @@ class _Server:
                 try:
                     query.reply(self._key, self._answer(payload))
                 except TeachpathError as error:
-                    query.reply_err(_pack_error(error))
+                    query.reply_err(pack_error(error))
                 except Exception as error:
-                    query.reply_err(_pack_error(TeachpathError(f"{self._key} failed: {error!r}")))
+                    query.reply_err(pack_error(TeachpathError(f"{self._key} failed: {error!r}")))
 
     def close(self) -> None:
         """Answer no more; waits up to 5 s for the answer under way."""
@@ -283,17 +290,3 @@ class _Server:
             self._queryable.undeclare()
             self._queries.put(None)
             thread.join(timeout=5.0)
-
-
-def _pack_error(error: TeachpathError) -> bytes:
-    return json.dumps({"error": type(error).__name__, "message": str(error)}).encode()
-
-
-def _raise_again(payload: bytes, key: str) -> None:
-    try:
-        body = json.loads(payload)
-        kind = getattr(errors, body["error"])
-        message = body["message"]
-    except (ValueError, KeyError, TypeError, AttributeError):
-        raise Unreachable(f"{key} answered with an error: {payload[:200]!r}") from None
-    raise kind(message)

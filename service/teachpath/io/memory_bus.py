@@ -75,6 +75,10 @@ class MemoryBus:
                 changed(token, True)
         return handle
 
+    def is_joined(self) -> bool:
+        """All are in this process."""
+        return True
+
     def close(self) -> None:
         """Take back every subscription, answer and watch."""
         self._receivers.clear()

@@ -63,8 +63,9 @@ class Bench:
         hand_scene: str = "",
         arm: Arm | None = None,
         setpoint_timeout: float = 0.5,
+        bus: MemoryBus | None = None,
     ) -> None:
-        self.bus = MemoryBus()
+        self.bus = bus or MemoryBus()
         self.now = 0
         self.position = position
         self.error = 0.0
@@ -99,7 +100,7 @@ class Bench:
             signing_key=KEY,
             motion=motion,
             arm=arm,
-            time_source=TimeSource(lambda: self.now, lambda: EPOCH + self.now, self.sleep),
+            time_source=TimeSource(lambda: self.now, lambda: EPOCH + self.now, self.sleep, self.doze),
         )
 
     def _answer_scene(self, payload: bytes) -> bytes:
@@ -127,6 +128,10 @@ class Bench:
             self.bus.publish(KEYS.state("puma560"), wire.encode_state(self.joint_state()))
         if self.todo and self.todo[0][0]():
             self.todo.pop(0)[1]()
+
+    def doze(self, woken: threading.Event, duration: float) -> None:
+        """Wait at rest; an arm that looks only now and then finds what came meanwhile at the end."""
+        self.sleep(duration)
 
     def taken(self) -> Setpoint:
         """The newest setpoint that the arm has taken up."""

@@ -8,17 +8,19 @@ from teachpath.errors import Unreachable
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.io.bus import Handle
 from teachpath.io.documents import encode
+from teachpath.io.memory_bus import MemoryBus
 from teachpath.records import JointState, Plan
 from tests.unit.executor.executors import KEYS, Bench, standing, within_limits
 
+CUT = "the executor's own line to the bus is cut, and nothing is heard of the arm: look where the arm stands"
 GONE = "the driver of puma560 has ended: look where the arm stands, then start again"
 
 
 class LosableBench(Bench):
     """An executor with an arm whose driver announces itself."""
 
-    def __init__(self) -> None:
-        super().__init__()
+    def __init__(self, bus: MemoryBus | None = None) -> None:
+        super().__init__(bus=bus)
         self.driver: Handle = self.bus.announce(KEYS.alive("robot", "puma560"))
         self.follows_way_to_rest = False
 
@@ -62,6 +64,36 @@ def test_an_arm_whose_driver_ends_while_it_follows_a_way_to_rest_is_a_fault(benc
     bench.when(lambda: bench.state == "faulted", bench.stop.set)
     bench.run()
     assert bench.statuses[-1].reason == GONE
+
+
+class CuttableBus(MemoryBus):
+    """A bus of which the executor can lose sight."""
+
+    is_cut = False
+
+    def is_joined(self) -> bool:
+        return not self.is_cut
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.05])  # [s] from the loss of what was announced to that of the line
+def test_an_executor_whose_line_to_the_bus_is_cut_does_not_say_that_the_driver_has_ended(
+    middle: Plan, delay: float
+) -> None:
+    bus = CuttableBus()
+    bench, times = LosableBench(bus), list[int]()
+
+    def lose() -> None:
+        times.append(bench.now)
+        bench.lose_driver()
+
+    bench.start(middle)
+    bench.when(lambda: bench.state == "following", lose)
+    bench.when(lambda: bench.now >= times[0] + 1e9 * delay, lambda: setattr(bus, "is_cut", True))
+    bench.when(lambda: bench.state == "faulted", bench.stop.set)
+    bench.run()
+    assert bench.statuses[-1].reason == f"{CUT}, then start again"
+    assert standing(bench.setpoints)
+    assert within_limits(bench.setpoints)
 
 
 def test_no_start_believes_the_last_joint_state_of_a_driver_that_has_ended(bench: LosableBench, middle: Plan) -> None:

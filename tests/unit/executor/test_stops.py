@@ -1,5 +1,8 @@
 """Stops that are put: obeyed in every state, shown by the status at once, and written down once."""
 
+import threading
+from itertools import pairwise
+
 import pytest
 
 from teachpath.io import wire
@@ -113,3 +116,35 @@ def test_what_is_no_stop_is_not_obeyed_and_harms_nothing(bench: Bench, middle: P
     bench.when(lambda: bench.state == "ended", bench.stop.set)
     bench.run()
     assert bench.statuses[-1].progress == pytest.approx(1.0)
+
+
+class WakefulBench(Bench):
+    """An executor that may be woken at every millisecond of its rest."""
+
+    def doze(self, woken: threading.Event, duration: float) -> None:
+        end = self.now + round(1e9 * duration)
+        while self.now < end and not woken.is_set():
+            self.sleep(1e-3)
+
+
+def test_at_rest_a_stop_is_shown_in_the_next_period_and_many_of_them_hurry_nobody() -> None:
+    bench, waited, looks = WakefulBench(), list[int](), list[int]()
+    bench.bus.subscribe(KEYS.executor_status, lambda _, __: looks.append(bench.now))
+
+    def stop() -> None:
+        count, begun = len(looks), bench.now
+        put(bench, id=f"stop at {begun}")
+        bench.todo.insert(0, (lambda: len(looks) > count, lambda: waited.append(looks[-1] - begun)))
+
+    for moment in range(900, 1023, 3):  # [ms] at every millisecond of an idle cycle
+        bench.when(lambda moment=moment: bench.now >= 1e6 * moment, stop)
+    flood = 1_050_000_000
+    for _ in range(100):  # one each millisecond
+        bench.when(lambda: bench.now >= flood, lambda: put(bench))
+    bench.when(lambda: True, bench.stop.set)
+    bench.run()
+    assert len(waited) == 41
+    assert max(waited) <= PERIOD_NS
+    shown = [now for now in looks if now >= flood]
+    assert len(shown) > 20
+    assert all(later - sooner >= PERIOD_NS for sooner, later in pairwise(shown))
