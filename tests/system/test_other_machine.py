@@ -1,14 +1,17 @@
-"""A browser on another machine: a network namespace of its own, the station by its name, and the station's authority.
+"""A browser on another machine, as a network namespace is one: the station by its name, and the station's authority.
 
 Page, WebSockets and the headset's hand need https there; nothing is told to overlook a fault of the certificate.
 """
 
+import ctypes
 import os
 import shutil
+import socket
 import subprocess
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -31,32 +34,51 @@ pytestmark = pytest.mark.system
 
 NAME, PASSWORD = "robot.teachpath.internal", "four words put together"
 ASSETS = Path(__file__).parent / "assets"
-NETWORK = f"10.213.{os.getpid() % 250}"  # of this run alone
-HERE, THERE = f"{NETWORK}.1", f"{NETWORK}.2"
+HERE, THERE = "10.213.0.1", "10.213.0.2"
+CLONE_NEWNET = 0x40000000  # of Linux' setns
 
 
 @pytest.fixture(scope="module")
-def namespace() -> Iterator[str]:
-    """A network namespace with one line to this one."""
+def namespaces() -> Iterator[tuple[str, str]]:
+    """Two network namespaces with a line between them: the station's and the browser's.
+
+    This machine's own sees nothing of it: a browser there breaks off its requests when a line of its machine changes.
+    """
     missing = [program for program in ("ip", "certutil") if shutil.which(program) is None]
     if missing:
         pytest.skip(f"no {' and no '.join(missing)}; get them with: sudo apt-get install iproute2 libnss3-tools")
-    name = f"teachpath-{os.getpid()}"
-    near, far = f"tp{os.getpid()}a", f"tp{os.getpid()}b"
-    if subprocess.run(["ip", "netns", "add", name], capture_output=True).returncode:
-        pytest.skip("only root may make a network namespace: run the tests as root, or in a container of its own")
+    near, far = names = f"teachpath-{os.getpid()}-near", f"teachpath-{os.getpid()}-far"
+    made: list[str] = []
     try:
+        for name in names:
+            if subprocess.run(["ip", "netns", "add", name], capture_output=True).returncode:
+                pytest.skip("only root may make a network namespace: run the tests as root, or in a container of its own")
+            made.append(name)
         for words in (
-            f"link add {near} type veth peer name {far} netns {name}",
-            f"addr add {HERE}/30 dev {near}",
-            f"link set {near} up",
-            f"-n {name} addr add {THERE}/30 dev {far}",
-            f"-n {name} link set {far} up",
+            f"-n {near} link add line type veth peer name line netns {far}",
+            f"-n {near} addr add {HERE}/30 dev line",
+            f"-n {near} link set line up",
+            f"-n {far} addr add {THERE}/30 dev line",
+            f"-n {far} link set line up",
         ):
             subprocess.run(["ip", *words.split()], check=True, timeout=HANG)
-        yield name
+        yield names
     finally:
-        subprocess.run(["ip", "netns", "del", name], check=True, timeout=HANG)
+        for name in made:
+            subprocess.run(["ip", "netns", "del", name], check=True, timeout=HANG)
+
+
+def listen_in(namespace: str, port: int) -> socket.socket:
+    """Listen in a network namespace; a socket stays in that of the thread that made it."""
+
+    def make() -> socket.socket:
+        with open(f"/run/netns/{namespace}") as file:
+            if ctypes.CDLL(None, use_errno=True).setns(file.fileno(), CLONE_NEWNET):
+                raise OSError(ctypes.get_errno(), f"cannot enter the network namespace {namespace}")
+        return listen(HERE, port)
+
+    with ThreadPoolExecutor(1) as thread:  # which ends, and its namespace with it
+        return thread.submit(make).result()
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +91,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def station(data: Path, namespace: str) -> Iterator[tuple[Station, str]]:
+def station(data: Path, namespaces: tuple[str, str]) -> Iterator[tuple[Station, str]]:
     """A station that listens on the line, with a person who may show how it is done; and its address."""
     with stations.station_in(data, auth={"mode": "token"}, web={"host": HERE, "hosts": [NAME]}) as station:
         now = time.time_ns()
@@ -80,7 +102,7 @@ def station(data: Path, namespace: str) -> Iterator[tuple[Station, str]]:
         assert station.certificate
         port = free_port()
         server = web_server(station.web, station.settings.web, station.certificate.context)
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listen(HERE, port)]}, daemon=True)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listen_in(namespaces[0], port)]}, daemon=True)
         thread.start()
         wait_until(lambda: server.started, "the server has started")
         yield station, f"https://{NAME}:{port}"
@@ -91,8 +113,8 @@ def station(data: Path, namespace: str) -> Iterator[tuple[Station, str]]:
 
 
 @pytest.fixture(scope="module")
-def far_browser(namespace: str, data: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    """Chromium in the namespace, which trusts the station's authority and knows the station's name."""
+def far_browser(namespaces: tuple[str, str], data: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Chromium in a namespace of its own, which trusts the station's authority and knows the station's name."""
     home = tmp_path_factory.mktemp("home")
     trusted = home / ".pki" / "nssdb"
     trusted.mkdir(parents=True)
@@ -100,7 +122,7 @@ def far_browser(namespace: str, data: Path, tmp_path_factory: pytest.TempPathFac
     for words in (["-N", "--empty-password"], ["-A", "-n", "station", "-t", "C,,", "-i", str(authority)]):
         subprocess.run(["certutil", "-d", f"sql:{trusted}", *words], check=True, timeout=HANG)
     known = f"--host-resolver-rules=MAP {NAME} {HERE}"
-    with chromium(f"ip netns exec {namespace} {find_chromium()}", known, HOME=str(home)) as browser:
+    with chromium(f"ip netns exec {namespaces[1]} {find_chromium()}", known, HOME=str(home)) as browser:
         yield browser
 
 

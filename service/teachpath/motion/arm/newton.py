@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import atan2, cos, sin, sqrt
 from typing import Final
 
 import numpy as np
 
-from teachpath.compiled import compiled
+from teachpath.compiled import F, compiled
 from teachpath.records import Array
 
 MAX_STEP: Final = 0.5  # rad, of a joint in one iteration
 DAMPING: Final = 0.05  # of the squared error, by which steps near singular configurations stay small
 HALF_TURN: Final = 1e-6  # sine of a turn below which, near a half turn, its axis is read from the matrix's columns
 
-kernel = compiled(error_model="numpy")  # which lets a division by zero give what it gives in numpy
+kernel: Callable[[F], F] = compiled(error_model="numpy")  # which lets a division by zero give what it gives in numpy
 
 
 @kernel
