@@ -52,7 +52,9 @@ def namespaces() -> Iterator[tuple[str, str]]:
     try:
         for name in names:
             if subprocess.run(["ip", "netns", "add", name], capture_output=True).returncode:
-                pytest.skip("only root may make a network namespace: run the tests as root, or in a container of its own")
+                pytest.skip(
+                    "only root may make a network namespace: run the tests as root, or in a container of its own"
+                )
             made.append(name)
         for words in (
             f"-n {near} link add line type veth peer name line netns {far}",
