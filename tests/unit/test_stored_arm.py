@@ -55,5 +55,5 @@ def test_what_is_no_arm_of_a_station_is_a_sentence(store: Store) -> None:
     store.arms.add(read_arm("six-axis", name="light"), "six_axis.urdf")
     with pytest.raises(UnusableSettings, match=r"motion.tool_length is 0.2, and motion.arm is 'light': leave out"):
         with_stored_arm(settings(tool_length=0.2), store.arms)
-    with pytest.raises(UnusableSettings, match=r"motion.home puts joint 3 to 3.000 rad, limits -2.800 to 2.800"):
+    with pytest.raises(UnusableSettings, match=r"motion.home puts forearm_joint to 3.000 rad, limits -2.800 to 2.800"):
         with_stored_arm(settings(home=(0.0, 0.0, 3.0, 0.0, 0.0, 0.0)), store.arms)

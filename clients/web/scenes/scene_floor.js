@@ -1,5 +1,5 @@
 // The height of a scene's floor, in millimetres.
-import { element } from "../elements.js";
+import { block, element } from "../elements.js";
 import { MAX_LENGTH, watchTyping, writeInput } from "./shape_fields.js";
 
 export class SceneFloor {
@@ -22,7 +22,7 @@ export class SceneFloor {
 
   /** @param {Scene | null} scene */
   show(scene) {
-    this.input.disabled = scene === null;
+    block(this.input, scene ? "" : "The scene is not read yet.");
     if (scene) writeInput(this.input, String(Number((1000 * scene.floor).toFixed(4))));
   }
 

@@ -36,7 +36,8 @@ class Shape:
     orientation: Quaternion = (1.0, 0.0, 0.0, 0.0)
     file: str = ""
     vertices: tuple[Vector, ...] = ()
-    mass: float | None = field(default=None, metadata=LATER)
+    # Not in the text by which arms are hashed: those that are kept hold, and an arm's links have masses of their own.
+    mass: float | None = field(default=None, repr=False, metadata=LATER)
 
 
 @dataclass(frozen=True, slots=True)
