@@ -3,6 +3,7 @@
 #   make test    check and all tests          make bench [ARGS=scale]   measured figures; how costs grow
 #   make check   format, lint, types          make proto   regenerate the messages
 #   make lint-contract   Spectral and Redocly over the description of the REST API, buf over the messages
+#   make generate-clients   clients by three public generators: none has an untyped answer, one teaches a station
 #   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/
 #   make docs    the documents as a site; the service shows it under /help
 #   make pins [ARGS=--upgrade]   choose the versions of requirements/ anew
@@ -26,11 +27,11 @@ READY   := .venv/.ready
 # Every file is checked against its hash, and nothing is installed that requirements/ does not name.
 PINNED  := --no-deps --require-hashes -r requirements
 
-.PHONY: demo serve test check check-page lint-contract bench experiments docs pins sbom proto clean setup programs
+.PHONY: demo serve test check check-page lint-contract generate-clients bench experiments docs pins sbom proto clean setup programs
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,10s/^# \{0,1\}//p' Makefile
+	@sed -n '1,11s/^# \{0,1\}//p' Makefile
 
 # An environment with pip in it, from scratch where another interpreter's stands; Debian keeps the module that makes one
 # in a package of its own.
@@ -94,6 +95,16 @@ lint-contract: $(CONTRACT_TOOLS)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract run --silent lint
 	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract run --silent messages
 
+# Clients that others make of the description; the generators have libraries of their own.
+GENERATORS := .venv/generators/.ready
+$(GENERATORS): requirements/generators.txt | $(READY)
+	@$(BIN)/python -m venv .venv/generators
+	@.venv/generators/bin/python -m pip install -q --disable-pip-version-check $(PINNED)/generators.txt
+	@touch $@
+
+generate-clients: $(GENERATORS) $(PAGE_TOOLS)
+	@$(BIN)/python -m tests.contract.generated_clients
+
 # What tests need beside Python's packages: found, installed where that is allowed, or named.
 SEEN = PATH="$$PATH:/usr/sbin" command -v
 programs:
@@ -134,6 +145,7 @@ left_out = $$(sed -n 's/^\([a-z0-9-]*\)==[^;]*$$/--no-emit-package \1/p' require
 pins: $(SERVICE)
 	@$(call install,$(PINNED)/uv.txt)
 	$(COMPILE) --group setup -o requirements/uv.txt
+	$(COMPILE) --group generators -o requirements/generators.txt
 	$(COMPILE) pyproject.toml --extra service --group build -o requirements/service.txt
 	$(COMPILE) pyproject.toml --extra postgres --extra s3 -c requirements/service.txt -o requirements/site.txt \
 		$(call left_out,service)

@@ -9,6 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 FILES = {name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("service", "site", "dev", "uv")}
+GENERATORS = (ROOT / "requirements" / "generators.txt").read_text()  # in an environment of their own
 
 
 def pinned(text: str) -> list[str]:
@@ -27,9 +28,9 @@ def wanted(*lists: list[str]) -> set[str]:
     return {re.sub(r"[-_.]+", "-", name[0]).lower() for name in names if name}
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_every_requirement_is_a_version_with_hashes_and_nothing_else(name: str) -> None:
-    lines = FILES[name].replace("\\\n", "").splitlines()
+@pytest.mark.parametrize("text", [*FILES.values(), GENERATORS], ids=[*FILES, "generators"])
+def test_every_requirement_is_a_version_with_hashes_and_nothing_else(text: str) -> None:
+    lines = text.replace("\\\n", "").splitlines()
     assert lines
     for line in lines:
         assert re.fullmatch(r"[a-z0-9-]+==[\w.]+( ; [^;@]+?)?( +--hash=sha256:[0-9a-f]{64})+ *", line), line[:100]
@@ -42,6 +43,7 @@ def test_everything_that_is_asked_for_is_pinned() -> None:
     assert wanted(extras["postgres"], extras["s3"]) <= service | site
     assert wanted(extras["dev"], extras["dask"], extras["lerobot"], extras["ros"]) <= service | site | dev
     assert wanted(groups["setup"]) == set(pinned(FILES["uv"]))
+    assert wanted(groups["generators"]) <= set(pinned(GENERATORS))
 
 
 def test_a_distribution_is_pinned_in_one_place() -> None:
