@@ -13,6 +13,7 @@ from teachpath_client import HandReading, Link, Station, Tracker
 from teachpath_client.models import Execution
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
+from tests.system.carriers import NEXT, START, move_hand
 from tests.system.test_view import Visit
 from tests.waiting import wait_until
 
@@ -27,9 +28,13 @@ Done = Callable[[], bool]
 
 
 class Operator:
-    """Somebody at the tab Run of a page."""
+    """Somebody at the tab Run of a page.
 
-    def __init__(self, visit: Visit, station: Station) -> None:
+    Args:
+        station: whose page it is; None where it answers on another machine, for the page alone.
+    """
+
+    def __init__(self, visit: Visit, station: Station | None = None) -> None:
         self.page, self._station, self._visit = visit.page, station, visit
 
     @property
@@ -39,6 +44,7 @@ class Operator:
 
     def executions(self) -> list[Execution]:
         """All executions, newest first."""
+        assert self._station
         return self._station.executions()
 
     def status(self) -> Status:
@@ -204,6 +210,29 @@ class Leader(Operator):
 
         wait_until(led, "the arm is led there")
         self.wait_ready()
+
+    def lead_upwards(self) -> None:
+        """Lead the arm 5 cm up by a headset's right hand while its left one is closed, and end the session."""
+        self.begin("a headset")
+        self._visit.wait(lambda: self.page.evaluate("teachpath.teleop().isPositioned"))
+        begin = np.zeros(3)
+
+        def clutch(closed: int) -> None:
+            self.page.evaluate(f"headset.hands.left.updatePinchValue({closed}); 0")
+
+        def press() -> None:
+            move_hand(self._visit, START, 0)
+            self.page.evaluate(NEXT)
+            begin[:] = self.tool()
+            clutch(1)
+
+        def led() -> bool:
+            return bool(np.linalg.norm(self.tool() - begin - [0, 0, 0.05]) < 0.002)
+
+        above = (START[0], START[1], START[2] + 0.05)
+        self.lead(press, lambda: move_hand(self._visit, above, 0), lambda: clutch(0), led)
+        self.page.locator("#teleop").get_by_role("button", name="Finish").evaluate("button => button.click()")
+        self.until(lambda status: status["state"] == "ended")
 
 
 class Shown:

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -46,9 +46,12 @@ class Command:
 
     Args:
         folder: working folder; `tmp` in it becomes its folder of temporary files.
+        under: the command that it is started by, as one that puts it into a namespace.
     """
 
-    def __init__(self, *arguments: str, folder: Path, environment: dict[str, str] | None = None) -> None:
+    def __init__(
+        self, *arguments: str, folder: Path, environment: dict[str, str] | None = None, under: Sequence[str] = ()
+    ) -> None:
         self.family = uuid.uuid4().hex
         self.temporary = folder / "tmp"
         self.temporary.mkdir(parents=True, exist_ok=True)
@@ -56,7 +59,7 @@ class Command:
         self._out, self._err = (folder / f"{self.family}.{name}" for name in ("out", "err"))
         with self._out.open("wb") as out, self._err.open("wb") as err:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "teachpath", *arguments],
+                [*under, sys.executable, "-m", "teachpath", *arguments],
                 env={**clean, "TMPDIR": str(self.temporary), FAMILY: self.family, **(environment or {})},
                 cwd=folder,
                 stdin=subprocess.DEVNULL,

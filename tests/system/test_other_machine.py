@@ -3,15 +3,11 @@
 Page, WebSockets and the headset's hand need https there; nothing is told to overlook a fault of the certificate.
 """
 
-import ctypes
 import os
 import shutil
-import socket
 import subprocess
-import threading
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +16,14 @@ from typer.testing import CliRunner
 
 from teachpath.__main__ import app
 from teachpath.access.passwords import hash_password
-from teachpath.app import Station
-from teachpath.commands.serving import listen
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.records import Capability, Person
-from teachpath.web.server import web_server
 from tests.conftest import chromium, find_chromium
-from tests.contract import stations
-from tests.ports import free_port
-from tests.system.carriers import HEADSET
+from tests.system.carriers import HEADSET, carry_worn, move_hand, phase
+from tests.system.operators import Leader
+from tests.system.processes import BUSY, Command
+from tests.system.test_view import Visit
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
@@ -35,7 +31,7 @@ pytestmark = pytest.mark.system
 NAME, PASSWORD = "robot.teachpath.internal", "four words put together"
 ASSETS = Path(__file__).parent / "assets"
 HERE, THERE = "10.213.0.1", "10.213.0.2"
-CLONE_NEWNET = 0x40000000  # of Linux' setns
+TASK = "far"
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +56,7 @@ def namespaces() -> Iterator[tuple[str, str]]:
             f"-n {near} link add line type veth peer name line netns {far}",
             f"-n {near} addr add {HERE}/30 dev line",
             f"-n {near} link set line up",
+            f"-n {near} link set lo up",
             f"-n {far} addr add {THERE}/30 dev line",
             f"-n {far} link set line up",
         ):
@@ -70,48 +67,43 @@ def namespaces() -> Iterator[tuple[str, str]]:
             subprocess.run(["ip", "netns", "del", name], check=True, timeout=HANG)
 
 
-def listen_in(namespace: str, port: int) -> socket.socket:
-    """Listen in a network namespace; a socket stays in that of the thread that made it."""
-
-    def make() -> socket.socket:
-        with open(f"/run/netns/{namespace}") as file:
-            if ctypes.CDLL(None, use_errno=True).setns(file.fileno(), CLONE_NEWNET):
-                raise OSError(ctypes.get_errno(), f"cannot enter the network namespace {namespace}")
-        return listen(HERE, port)
-
-    with ThreadPoolExecutor(1) as thread:  # which ends, and its namespace with it
-        return thread.submit(make).result()
-
-
 @pytest.fixture(scope="module")
 def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data folder with a certificate for the station's name."""
-    folder = tmp_path_factory.mktemp("station") / "data"
+    """A data folder with a certificate for the station's name, a task, and a person who may show and lead."""
+    folder, now = tmp_path_factory.mktemp("station") / "data", time.time_ns()
     result = CliRunner().invoke(app, ["tls", "init", "--name", NAME, "--data", str(folder)])
     assert result.exception is None, result.output
+    store = Store(StoreSettings(data_dir=str(folder)))
+    may = (Capability.DEMONSTRATE, Capability.OPERATE)
+    store.people.add(Person("anna", may, hash_password(PASSWORD, "anna"), now, now))
+    store.ensure_task(TASK, scene="paper", calibration="identity")
+    store.close()
     return folder
 
 
 @pytest.fixture(scope="module")
-def station(data: Path, namespaces: tuple[str, str]) -> Iterator[tuple[Station, str]]:
-    """A station that listens on the line, with a person who may show how it is done; and its address."""
-    with stations.station_in(data, auth={"mode": "token"}, web={"host": HERE, "hosts": [NAME]}) as station:
-        now = time.time_ns()
-        kept = hash_password(PASSWORD, "anna")
-        station.store.people.add(Person("anna", (Capability.DEMONSTRATE,), kept, now, now))
-        station.access.refresh()
-        station.store.ensure_task("far", scene="paper", calibration="identity")
-        assert station.certificate
-        port = free_port()
-        server = web_server(station.web, station.settings.web, station.certificate.context)
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listen_in(namespaces[0], port)]}, daemon=True)
-        thread.start()
-        wait_until(lambda: server.started, "the server has started")
-        yield station, f"https://{NAME}:{port}"
-        open_ = server.server_state
-        wait_until(lambda: not open_.connections and not open_.tasks, "the browser's connections have ended")
-        server.should_exit = True
-        thread.join(HANG)
+def address(data: Path, namespaces: tuple[str, str]) -> Iterator[str]:
+    """Where a whole station on the other end of the line answers: all of its processes are in that namespace."""
+    command = Command(
+        *("serve", "--data", str(data)),
+        folder=data.parent,
+        environment={
+            **BUSY,
+            "TEACHPATH_AUTH__MODE": "token",
+            "TEACHPATH_WEB__HOST": HERE,
+            "TEACHPATH_WEB__HOSTS": f'["{NAME}"]',
+        },
+        under=("ip", "netns", "exec", namespaces[0]),
+    )
+    try:
+        wait_until(lambda: "teachpath serves https" in command.out, "the station serves")
+        yield f"https://{NAME}:8765"
+        command.process.terminate()
+        assert command.wait() == 0, command.err
+        command.wait_gone()
+        assert "Traceback" not in command.err, command.err
+    finally:
+        command.clean_up()
 
 
 @pytest.fixture(scope="module")
@@ -128,29 +120,38 @@ def far_browser(namespaces: tuple[str, str], data: Path, tmp_path_factory: pytes
         yield browser
 
 
-def test_page_websockets_and_headset_work_by_the_station_s_name(station: tuple[Station, str], far_browser: Any) -> None:
-    running, address = station
-    page = far_browser.new_page(viewport={"width": 900, "height": 420})  # less to draw
-    page.set_default_timeout(1000 * HANG)
-    page.add_init_script((ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET)
-    page.goto(address)
+def sign_in(page: Any) -> None:
     page.fill("#sign-in-name", "anna")
     page.fill("#sign-in-password", PASSWORD)
     page.click("#sign-in button")
+
+
+@pytest.fixture
+def visit(address: str, far_browser: Any) -> Iterator[Visit]:
+    """Somebody who has signed in on the other machine, with a headset on."""
+    script = (ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET
+    visit = Visit(far_browser, address, script=script, size=(900, 420), enter=sign_in)  # less to draw
+    yield visit
+    visit.page.close()
+
+
+def test_a_headset_demonstrates_and_leads_the_arm_by_the_station_s_name(visit: Visit) -> None:
+    page = visit.page
     page.wait_for_function("() => teachpath.state().connection === 'live'")  # both WebSockets
     assert page.evaluate("isSecureContext")
     (cookie,) = page.context.cookies()
     assert (cookie["name"], cookie["secure"]) == ("__Host-teachpath-session", True)
-    page.select_option("#task", "far")
+    page.select_option("#task", TASK)
     page.locator("#tab-demonstrate").click()
     page.get_by_label("Countdown").select_option("0")
     page.get_by_role("button", name="In a headset").click()
-    page.wait_for_selector("html[data-session=ready]", state="attached")
+    phase(visit, "ready")
+    carry_worn(visit, move_hand)
+    phase(visit, "ready")
+    page.evaluate("teachpath.headset()?.end()")
+    page.get_by_role("button", name="Finish").click()
+    page.wait_for_selector("html[data-session='']", state="attached")
+    visit.wait(lambda: page.locator("#demonstrations .demonstration-list li").count() == 1)
 
-    def is_recorded() -> bool:
-        return any(s.statistics.received > 20 for s in running.recorder.statuses(with_statistics=True) if s.statistics)
-
-    wait_until(
-        is_recorded, "the headset's hand is recorded", pause=lambda seconds: page.wait_for_timeout(5000 * seconds)
-    )
-    page.close()
+    page.locator("#tab-run").click()
+    Leader(visit).lead_upwards()

@@ -11,7 +11,7 @@ from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.model import Arm
 from teachpath_client.models import Plan
 from tests.system.access import barriers
-from tests.system.carriers import HEADSET, NEXT, START, begin, carry, carry_worn, move_hand, phase
+from tests.system.carriers import HEADSET, begin, carry, carry_worn, move_hand, phase
 from tests.system.operators import RESTING, Leader, Operator, Status, named_joints
 from tests.system.processes import Service, stop_arm
 from tests.system.test_view import REST, Visit
@@ -260,25 +260,6 @@ def test_the_joints_are_plotted_as_they_move(visit: Visit, operator: Operator) -
 def test_a_headset_s_right_hand_leads_the_arm_while_the_left_one_is_closed(
     visit: Visit, service: Service, operator: Operator
 ) -> None:
-    leader, above = Leader(visit, service.station), (START[0], START[1], START[2] + 0.05)
     visit.page.evaluate("headset.primaryInputMode = 'hand'; 0")
-    leader.begin("a headset")
-    visit.wait(lambda: visit.page.evaluate("teachpath.teleop().isPositioned"))
-    begin = np.zeros(3)
-
-    def clutch(closed: int) -> None:
-        visit.page.evaluate(f"headset.hands.left.updatePinchValue({closed}); 0")
-
-    def press() -> None:
-        move_hand(visit, START, 0)
-        visit.page.evaluate(NEXT)
-        begin[:] = leader.tool()
-        clutch(1)
-
-    def led() -> bool:
-        return bool(np.linalg.norm(leader.tool() - begin - [0, 0, 0.05]) < 0.002)
-
-    leader.lead(press, lambda: move_hand(visit, above, 0), lambda: clutch(0), led)
-    visit.page.locator("#teleop").get_by_role("button", name="Finish").evaluate("button => button.click()")
-    leader.until(lambda status: status["state"] == "ended")
+    Leader(visit, service.station).lead_upwards()
     assert operator.said == []

@@ -161,9 +161,22 @@ HELD = """() => {
 
 
 class Visit:
-    """The page as opened in the browser, with all its console said; without a graphics card every pixel costs."""
+    """The page as opened in the browser, with all its console said; without a graphics card every pixel costs.
 
-    def __init__(self, browser: Any, address: str, *, script: str = "", size: tuple[int, int] = (1280, 800)) -> None:
+    Args:
+        script: of the page, before its own ones.
+        enter: what somebody does on the page before it shows anything, as to sign in.
+    """
+
+    def __init__(
+        self,
+        browser: Any,
+        address: str,
+        *,
+        script: str = "",
+        size: tuple[int, int] = (1280, 800),
+        enter: Callable[[Any], None] = lambda page: None,
+    ) -> None:
         self.page = browser.new_page(viewport={"width": size[0], "height": size[1]})
         self.page.set_default_timeout(1000 * HANG)
         if script:
@@ -173,6 +186,7 @@ class Visit:
         self.page.on("response", self._on_response)
         self.page.on("pageerror", lambda error: self.said.append(f"error: {error}"))
         self.page.goto(address)
+        enter(self.page)
         try:
             self.page.wait_for_selector("html[data-scene=ready]", state="attached")
             # What the service draws comes another way than what the page does, all of it at once.
