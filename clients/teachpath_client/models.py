@@ -13,9 +13,15 @@ Capability = Literal["view", "demonstrate", "teach", "operate", "administer"]
 
 ExecutorState = Literal["idle", "starting", "approaching", "following", "held", "stopping", "ended", "faulted"]
 
+FistCommand = Literal["toggle", "discard"]
+
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 LimitSource = Literal["model", "operator", "default"]
+
+Phase = Literal["reach", "grasp", "transport", "release", "return"]
+
+RecordingState = Literal["recording", "countdown", "pausing", "paused", "lost"]
 
 Verdict = Literal["clean", "repaired", "reject"]
 
@@ -140,7 +146,7 @@ class Assessment:
     lengths: list[float]
     parameters: list[float]
     positions: list[list[float]]
-    faults: list[str]
+    faults: list[str | str]
     reach: list[float]
     limits: list[float]
     singular: list[float]
@@ -575,7 +581,7 @@ class Failure:
     """Where a path fails: the first sample and the stretch [m], why, and what to change.
 
     Attributes:
-        fault: reach, limit, turn, singular, collision, start or end.
+        fault: what is wrong there.
         s: arc length of the first sample that fails [m].
         interval: arc lengths between which the path fails [m].
         position: of the path where it first fails [m, world].
@@ -725,7 +731,7 @@ class Job:
     Attributes:
         id: of the job.
         task: name of the task.
-        kind: learn, recut, plan or import.
+        kind: what it does.
         request: what was ordered, as its kind takes it.
         state: where it stands.
         fraction: of the work that is done, 0 to 1.
@@ -815,7 +821,7 @@ class Learned:
     """The result of one learning run over a task's demonstrations.
 
     Attributes:
-        mode: of learning: default, or paper as it was published.
+        mode: of learning; paper is as it was published.
         demonstrations: ids, as they are numbered in `linkage`.
         linkage: (m - 1, 4) merges as scipy writes them: left, right, height [m], size; leaves in the order of
             `demonstrations`.
@@ -1041,7 +1047,7 @@ class OpenQuestion:
 
     Attributes:
         problem: what is open, or wrong as it was read.
-        option: that answers it: columns, time, track or units.
+        option: that answers it.
         values: of the option that may be right; empty: any.
     """
 
@@ -1206,11 +1212,11 @@ class RecordingReport:
         clock_rate: seconds of the device's clock in one of the host's; 0: not known.
         idle: samples that belong to no demonstration.
         phase: of the hand; empty when the recording has ended.
-        state: recording, countdown, pausing, paused or lost; empty when the recording has ended.
+        state: what becomes of the samples; empty when the recording has ended.
         pedal_used: whether the pedal has been pressed in this recording.
         countdown_left: [s] until samples are recorded.
         takes_left: demonstrations until it pauses by itself; 0: nobody has said how many.
-        pending_command: what the fist that is held now commands when it opens: toggle, discard or nothing.
+        pending_command: what the fist that is held now commands when it opens; empty: nothing.
         notes: what an operator should know, in words.
     """
 
@@ -1235,12 +1241,12 @@ class RecordingReport:
     clock_uncertainty_ns: int
     clock_rate: float
     idle: int
-    phase: str
-    state: str
+    phase: Phase | str
+    state: RecordingState | str
     pedal_used: bool
     countdown_left: float
     takes_left: int
-    pending_command: str
+    pending_command: FistCommand | str
     notes: list[str]
 
 
@@ -1374,7 +1380,7 @@ class RunSummary:
         id: of the run.
         task: name of the task.
         created_ns: when it was made [ns since the Unix epoch].
-        mode: of learning: default, or paper as it was published.
+        mode: of learning; paper is as it was published.
         demonstrations: how many it learned from.
         paths: ids of the learned paths, one for each cluster.
     """

@@ -44,6 +44,8 @@ class Desk:
         route = next((r for r in routes if r.matches(scope)[0] is Match.FULL), None)
         if route is None or route.name not in self._operations or answer.text == "Invalid host header":
             return
+        if answer.status_code == 405:  # the address is another operation's
+            return
         promised = self._operations[route.name].get(str(answer.status_code))
         assert promised is not None, f"{route.name} does not say that it answers {answer.status_code}: {answer.text}"
         if answer.content:

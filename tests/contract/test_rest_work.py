@@ -74,7 +74,7 @@ def test_a_task_without_demonstrations_fails_with_a_sentence(desk: Desk) -> None
         ('{"keep": 0}', "learning.keep"),
         ('{"threshold": NaN}', "setting learning.threshold is nan; it should be a finite number"),
         ('{"threshold": []}', "setting learning.threshold"),
-        ('{"mode": "other"}', "learning.mode is 'other'; it is one of default, paper"),
+        ('{"mode": "other"}', "learning.mode is 'other'; it should be 'default', 'paper' or 'repaired'"),
         ('{"mode": "\\ud800"}', "settings cannot be read"),
         ('{"mode": "paper"}', "set learning.threshold in metres"),
         (f'{{"seed": 1{"0" * 400}}}', "too large"),
@@ -247,7 +247,7 @@ def test_without_an_executor_an_execution_is_503_and_kept_with_its_reason(desk: 
     refused(desk.post(f"/executions/{newest['id']}/override", {"override": 0.5}), 409, "is not running")
     refused(
         desk.post(f"/executions/{newest['id']}/jump"),
-        422,
+        404,
         "path.verb: it should be 'hold', 'resume' or 'reverse'",
     )
 

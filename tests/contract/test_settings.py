@@ -139,7 +139,7 @@ WRONG = {
     "[recording]\nclose_at = nan": "setting recording.close_at is nan; it should be a finite number",
     "[motion]\nleast_singular = inf": "setting motion.least_singular is inf",
     "[motion]\nhome = [0.0, 1.0]": "setting motion.home",
-    "[learning]\nmode = 'other'": "learning.mode is 'other'; it is one of default, paper",
+    "[learning]\nmode = 'other'": "learning.mode is 'other'; it should be 'default', 'paper' or 'repaired'",
     "[learning]\nmode = 'paper'": "set learning.threshold",
     "[[calibrations]]\nscale = 2.0": "setting calibrations.0.name is",
     "[[calibrations]]\nname = 'a'\n[[calibrations]]\nname = 'a'": "two settings of the calibration a",
@@ -149,7 +149,7 @@ WRONG = {
     "[[scenes]]\nname = 'a'\n[[scenes]]\nname = 'a'": "two settings of the scene a",
     "[bus]\nrobot = 'a b'": "'a b' cannot name a robot",
     "scenes = []": "at least one scene",
-    f"{BODY}kind = 'ball'": "b in scene a is a 'ball'; known are box, cylinder",
+    f"{BODY}kind = 'ball'": "scenes.0.carried.kind is 'ball'; it should be 'box', 'cylinder'",
     f"{BODY}kind = 'box'": "a box has 3 lengths over 0",
     "[web\nport = 1": "is not TOML: .*line 1",
 }

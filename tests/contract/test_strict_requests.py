@@ -27,9 +27,16 @@ OPERATIONS = [
 NAMES = [f"{method} {path}" for method, path, _ in OPERATIONS]
 
 
+def word(schema: dict[str, Any]) -> Any:
+    """Return a word that an address may hold in a place."""
+    if "enum" in schema:
+        return schema["enum"][0]
+    return "0" * 32 if "pattern" in schema else {"integer": 1}.get(schema.get("type", ""), "moon")
+
+
 def address(path: str, operation: dict[str, Any]) -> str:
     """Return an address of an operation; what it names is nowhere."""
-    words = {p["name"]: p["schema"].get("enum", ["moon"])[0] for p in operation.get("parameters", [])}
+    words = {p["name"]: word(p["schema"]) for p in operation.get("parameters", [])}
     return re.sub(r"\{(\w+)\}", lambda found: str(words[found[1]]), path)
 
 

@@ -204,7 +204,6 @@ def test_operations_leave_the_shape_and_say_how_exactly(desk: Desk) -> None:
         ("remove-knot", {"u": 0.3}, "u = 0.3 is no inner knot of the curve; it has 0.5"),
         ("remove-knot", {"u": 0.5}, "the curve moves by"),
         ("remove-knot", {"u": 0.5, "tolerance": 5}, "a tolerance of 5 m is outside 0 to 0.1"),
-        ("twist", {}, "it should be 'insert-knot', 'remove-knot' or 'elevate'"),
         ("evaluate", {"u": [2.0]}, "body.u.0"),
         ("evaluate", {"u": [0.5] * 2002}, "body.u"),
     ],

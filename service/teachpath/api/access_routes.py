@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from functools import partial
-from typing import Final
+from typing import Final, Literal
 
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
@@ -53,7 +53,7 @@ class Identity:
         provider: at which people sign in; empty: with a password.
     """
 
-    mode: str
+    mode: Literal["none", "token", "oidc", "proxy"]
     name: str
     capabilities: tuple[Capability, ...]
     provider: str = ""

@@ -79,7 +79,10 @@ def answer_errors(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     async def name_fields(request: Request, error: RequestValidationError) -> Response:
-        """Answer 422 with each wrong field, its place and what it may be; who may not ask at all is told that."""
+        """Answer 422 with each wrong field, its place and what it may be; 404 where the address itself is wrong.
+
+        Who may not ask at all is told that.
+        """
         try:
             await require_access(request)  # FastAPI reads parameters and bodies first
         except (NotSignedIn, NotAllowed) as refusal:
@@ -87,13 +90,20 @@ def answer_errors(app: FastAPI) -> None:
         errors = error.errors()
         faults = [_fault(request, e) for e in errors[:MAX_FAULTS]]
         sentence = f"{faults[0].place}: {faults[0].fault}" + (f", and {len(errors) - 1} more" if errors[1:] else "")
+        if any(e["loc"][0] == "path" for e in errors):
+            if _allowed(request):
+                return await name_place(request, HTTPException(405))
+            return refuse(404, sentence, "NotFound", errors=faults)
         return refuse(422, sentence, "UnusableInput", errors=faults)
 
     @app.exception_handler(HTTPException)
     async def name_place(request: Request, error: HTTPException) -> Response:
         """Answer an unknown address, a wrong method and the like in a sentence that names the way out."""
+        headers = dict(error.headers or {})
+        if error.status_code == 405:
+            methods = _allowed(request)
+            error, headers = HTTPException(405 if methods else 404), {"Allow": ", ".join(methods)} if methods else {}
         kind = HTTPStatus(error.status_code).phrase
-        headers = dict(error.headers or {}) | _allowed(request, error)
         return refuse(error.status_code, _sentence(request, headers, error), kind, headers=headers)
 
     @app.exception_handler(UnicodeEncodeError)
@@ -135,14 +145,21 @@ def _fault(request: Request, error: dict[str, Any]) -> Fault:
     return Fault(place=printable(place), fault=printable(error["msg"]).replace("Input should", "it should"))
 
 
-def _allowed(request: Request, error: HTTPException) -> dict[str, str]:
-    """Return the header Allow with the methods of all routes at the address, where the method is the fault."""
-    if error.status_code != 405:
-        return {}
-    routes = iter_route_contexts(request.app.routes)
-    found = [route for route in routes if route.matches(request.scope)[0] is Match.PARTIAL]
+def _allowed(request: Request) -> list[str]:
+    """Return the methods of all routes at the address."""
+    found = [route for route in iter_route_contexts(request.app.routes) if _is_at(route, request)]
     methods = {method for route in found for method in getattr(route, "methods", None) or ()}
-    return {"Allow": ", ".join(sorted(methods | ({"HEAD"} if "GET" in methods else set())))}
+    return sorted(methods | ({"HEAD"} if "GET" in methods else set()))
+
+
+def _is_at(route: Any, request: Request) -> bool:
+    """Tell whether an address is a route's, with words that it takes: `recording` is no verb of an execution."""
+    match, child = route.matches(request.scope)
+    if match is not Match.PARTIAL:
+        return False
+    named = child["path_params"]
+    fields = route.dependant.path_params if hasattr(route, "dependant") else ()
+    return not any(field.validate(named[field.alias], {}, loc=())[1] for field in fields)
 
 
 def _sentence(request: Request, headers: dict[str, str], error: HTTPException) -> str:
@@ -150,5 +167,5 @@ def _sentence(request: Request, headers: dict[str, str], error: HTTPException) -
     if error.status_code == 404:
         return f"there is nothing at {place}; the resources are listed at /docs"
     if error.status_code == 405:
-        return f"{place} is not possible; allowed here: {headers['Allow'] or 'nothing'}"
+        return f"{place} is not possible; allowed here: {headers['Allow']}"
     return str(error.detail)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Query, Request, Response
+from pydantic import WithJsonSchema
 from starlette.concurrency import run_in_threadpool
 
 from teachpath.api.access import DEMONSTRATE, Sender
@@ -16,6 +17,7 @@ from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.work import IdempotencyKey, accepted, submitter_of
 from teachpath.errors import UnusableInput
+from teachpath.io.readers.contract import QUATERNION_ORDERS, TIME_UNITS, UNITS
 from teachpath.io.readers.registry import check_options
 from teachpath.io.store.faults import storage_fault
 from teachpath.jobs.idempotency import begun_by
@@ -29,6 +31,11 @@ FILE_BODY: Final[dict[str, Any]] = {
     "required": True,
     "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
 }
+
+# One of these words or none; the reader's own check says in a sentence what others may mean.
+LengthUnit = Annotated[str, WithJsonSchema({"type": "string", "enum": ["", *UNITS]})]
+TimeUnit = Annotated[str, WithJsonSchema({"type": "string", "enum": ["", *TIME_UNITS]})]
+QuaternionOrder = Annotated[str, WithJsonSchema({"type": "string", "enum": ["", *QUATERNION_ORDERS]})]
 
 
 def imports_router(parts: Parts) -> APIRouter:
@@ -49,11 +56,11 @@ def imports_router(parts: Parts) -> APIRouter:
         response: Response,
         name: Annotated[str, Query(description="name of the source", max_length=200)] = "upload",
         format: Annotated[str, Query(description="name of a reader, or mcap; empty: what the file has")] = "",
-        units: Annotated[str, Query(description="of the positions: m, cm, mm or in; empty: as the file says")] = "",
-        time: Annotated[str, Query(description="unit of the clock: s, ms, us or ns; empty: as the file says")] = "",
+        units: Annotated[LengthUnit, Query(description="of the positions; empty: as the file says")] = "",
+        time: Annotated[TimeUnit, Query(description="unit of the clock; empty: as the file says")] = "",
         rate: Annotated[float, Query(description="[Hz] for a format without a clock; 0: 50")] = 0.0,
         columns: Annotated[str, Query(description="where a table has what: t=Time,x=2,...", max_length=1000)] = "",
-        quaternion: Annotated[str, Query(description="order of columns without names: wxyz or xyzw")] = "",
+        quaternion: Annotated[QuaternionOrder, Query(description="order of columns without names")] = "",
         track: Annotated[str, Query(description="which one, of a file with several", max_length=200)] = "",
         grasp: Annotated[float | None, Query(description="[s] at which the object is taken")] = None,
         release: Annotated[float | None, Query(description="[s] at which it is put")] = None,

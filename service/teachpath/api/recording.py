@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from fastapi import APIRouter, Response
 from pydantic import Field
@@ -16,7 +17,16 @@ from teachpath.errors import UnusableInput
 from teachpath.io.documents import from_document
 from teachpath.io.wire import recording_document
 from teachpath.recorder.recorder import Recorder
-from teachpath.records import Demonstration, RecordingRequest, RecordingStatus, Routine, StopRequest
+from teachpath.records import (
+    Demonstration,
+    FistCommand,
+    Phase,
+    RecordingRequest,
+    RecordingState,
+    RecordingStatus,
+    Routine,
+    StopRequest,
+)
 
 
 class NewRecording(Body):
@@ -71,11 +81,11 @@ class RecordingReport:
         clock_rate: seconds of the device's clock in one of the host's; 0: not known.
         idle: samples that belong to no demonstration.
         phase: of the hand; empty when the recording has ended.
-        state: recording, countdown, pausing, paused or lost; empty when the recording has ended.
+        state: what becomes of the samples; empty when the recording has ended.
         pedal_used: whether the pedal has been pressed in this recording.
         countdown_left: [s] until samples are recorded.
         takes_left: demonstrations until it pauses by itself; 0: nobody has said how many.
-        pending_command: what the fist that is held now commands when it opens: toggle, discard or nothing.
+        pending_command: what the fist that is held now commands when it opens; empty: nothing.
         notes: what an operator should know, in words.
     """
 
@@ -100,12 +110,12 @@ class RecordingReport:
     clock_uncertainty_ns: int
     clock_rate: float
     idle: int
-    phase: str
-    state: str
+    phase: Phase | Literal[""]
+    state: RecordingState | Literal[""]
     pedal_used: bool
     countdown_left: float
     takes_left: int
-    pending_command: str
+    pending_command: FistCommand | Literal[""]
     notes: tuple[str, ...]
 
 

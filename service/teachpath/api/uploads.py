@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 
 from teachpath.api.access import DEMONSTRATE, VIEW, Sender
 from teachpath.api.answers import json_response, located, model_of
-from teachpath.api.imports import FILE_BODY, receive_file
+from teachpath.api.imports import FILE_BODY, LengthUnit, QuaternionOrder, TimeUnit, receive_file
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.strict_requests import Body, named_in_body
@@ -64,11 +64,11 @@ class FileChoices(Body):
 
     name: str = Field("upload", max_length=200, description="of the file")
     format: str = Field("", description="name of a reader, or mcap; empty: what the file has")
-    units: str = Field("", description="of the positions: m, cm, mm or in")
-    time: str = Field("", description="unit of the clock: s, ms, us or ns")
+    units: LengthUnit = Field("", description="of the positions")
+    time: TimeUnit = Field("", description="unit of the clock")
     rate: float = Field(0.0, allow_inf_nan=False, description="[Hz] for a format without a clock; 0: 50")
     columns: str = Field("", max_length=1000, description="where a table has what: t=Time,x=2,...")
-    quaternion: str = Field("", description="order of columns without names: wxyz or xyzw")
+    quaternion: QuaternionOrder = Field("", description="order of columns without names")
     track: str = Field("", max_length=200, description="which one, of a file with several")
     grasp: float | None = Field(
         None, allow_inf_nan=False, description="[s] from the beginning, at which the object is taken"

@@ -22,7 +22,7 @@ from teachpath.jobs.settings import JobSettings
 from teachpath.jobs.shared_jobs import OwnJobs, SharedJobs
 from teachpath.logs import continue_request, request_number
 from teachpath.process_server import CONTEXT
-from teachpath.records import Job, JobState
+from teachpath.records import Job, JobKindName, JobState
 from teachpath_proto.keys import Keys
 
 if TYPE_CHECKING:  # the settings of jobs are read in processes that have no store
@@ -136,7 +136,7 @@ class Jobs:
     def submit(
         self,
         task: str,
-        kind: str,
+        kind: JobKindName,
         request: dict[str, Any],
         submitter: str = "",
         *,

@@ -10,8 +10,9 @@ from typing import Annotated, Any, get_args, get_type_hints
 from annotated_types import Ge, Gt, Le
 
 from teachpath.errors import UnusableSettings
+from teachpath.records import LearningMode
 
-MODES = ("default", "paper", "repaired")
+MODES = get_args(LearningMode)
 METRICS = ("arc", "frechet", "dtw", "undersampled")
 
 Progress = Callable[[float, str], None]
@@ -60,7 +61,7 @@ class LearningSettings:
 
     # `default` is what to trust; `paper` follows Aleotti & Caselli 2005 to the letter; `repaired` is `paper` with
     # symbols in an order that means something and a model that starts from slices of time
-    mode: str = "default"
+    mode: LearningMode = "default"
     # demonstrations that a cluster keeps: at least so many in mode default, exactly so many in the others
     keep: Annotated[int, Ge(1)] = 2
     # distance of two demonstrations in mode default: mean of corresponding points at equal arc length `arc`,

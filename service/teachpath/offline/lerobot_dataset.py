@@ -57,7 +57,7 @@ def dataset_of(demonstrations: Sequence[Demonstration], received: Sequence[Seque
         **_as_measured(takes, turned=turned),
         "transport": Feature("bool", (), [*map(_transport, demonstrations, received, takes)]),
     }
-    said = {
+    said: dict[str, list[str]] = {
         "demonstration": [d.id for d in demonstrations],
         "source": [d.source for d in demonstrations],
         "calibration": [d.calibration.name for d in demonstrations],

@@ -15,7 +15,7 @@ from teachpath.records.access import (
     capabilities_of,
 )
 from teachpath.records.arrays import Array, Matrix, Pose, Quaternion, Vector
-from teachpath.records.assessments import Assessment, Failure, Suggestion
+from teachpath.records.assessments import Assessment, Failure, PathFault, Suggestion
 from teachpath.records.audit import AuditEntry
 from teachpath.records.calibrations import Calibration, MeasuredCalibration, TaughtPoint
 from teachpath.records.control import Command, JournalEntry, Lease, LeaseRequest, TeleopRequest
@@ -37,6 +37,7 @@ from teachpath.records.learned import (
     Fit,
     Learned,
     LearnedPath,
+    LearningMode,
     PathSummary,
     PlanSummary,
     RunSummary,
@@ -51,6 +52,7 @@ from teachpath.records.motion import (
     Scene,
     SceneQuery,
     Shape,
+    ShapeKind,
     Signature,
     ToolPose,
 )
@@ -79,7 +81,7 @@ from teachpath.records.serial_arms import (
     StoredArm,
 )
 from teachpath.records.versions import MAIN_BRANCH, ControlPointChange, Difference, Version
-from teachpath.records.work import Job, JobState
+from teachpath.records.work import Job, JobKindName, JobState
 
 __all__ = [
     "MAIN_BRANCH",
@@ -109,12 +111,14 @@ __all__ = [
     "Fit",
     "HandState",
     "Job",
+    "JobKindName",
     "JobState",
     "JointLimit",
     "JointState",
     "JournalEntry",
     "Learned",
     "LearnedPath",
+    "LearningMode",
     "Lease",
     "LeaseRequest",
     "LimitSource",
@@ -122,6 +126,7 @@ __all__ = [
     "MeasuredCalibration",
     "MotionPreview",
     "ObjectPose",
+    "PathFault",
     "PathSummary",
     "Person",
     "Phase",
@@ -150,6 +155,7 @@ __all__ = [
     "Session",
     "Setpoint",
     "Shape",
+    "ShapeKind",
     "Signature",
     "StopRequest",
     "StoredArm",

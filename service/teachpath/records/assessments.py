@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from teachpath.records.arrays import Array, Matrix, Vector
+
+# Why the arm cannot follow a path at a place.
+PathFault = Literal["reach", "limit", "turn", "singular", "collision", "start", "end"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +31,7 @@ class Failure:
     """Where a path fails: the first sample and the stretch [m], why, and what to change.
 
     Attributes:
-        fault: reach, limit, turn, singular, collision, start or end.
+        fault: what is wrong there.
         s: arc length of the first sample that fails [m].
         interval: arc lengths between which the path fails [m].
         position: of the path where it first fails [m, world].
@@ -35,7 +39,7 @@ class Failure:
         suggestion: what to change.
     """
 
-    fault: str
+    fault: PathFault
     s: float
     interval: tuple[float, float]
     position: Vector
@@ -66,7 +70,7 @@ class Assessment:
     lengths: Array
     parameters: Array
     positions: Matrix
-    faults: tuple[str, ...]
+    faults: tuple[PathFault | Literal[""], ...]
     reach: Array
     limits: Array
     singular: Array

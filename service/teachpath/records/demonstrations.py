@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -265,7 +266,7 @@ class Demonstration:
     advice: str = ""
     left_out: tuple[int, ...] = ()
     trim: tuple[int, int] | None = None
-    mark: str = ""
+    mark: Literal["", "good", "bad"] = ""
     discarded_ns: int = 0
     amended_by: str = ""
     digest: RecordingDigest | None = None

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 from teachpath.nurbs import Curve
 from teachpath.records.arrays import Array, Matrix
 from teachpath.records.motion import ObjectPose
+
+LearningMode = Literal["default", "paper", "repaired"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +134,7 @@ class Learned:
     """The result of one learning run over a task's demonstrations.
 
     Attributes:
-        mode: of learning: default, or paper as it was published.
+        mode: of learning; paper is as it was published.
         demonstrations: ids, as they are numbered in `linkage`.
         linkage: (m - 1, 4) merges as scipy writes them: left, right, height [m], size; leaves in the order of
             `demonstrations`.
@@ -144,7 +147,7 @@ class Learned:
         inputs: SHA-256 of every demonstration's times, positions and orientations, by id.
     """
 
-    mode: str
+    mode: LearningMode
     demonstrations: tuple[str, ...]
     linkage: Matrix
     threshold: float
@@ -164,7 +167,7 @@ class RunSummary:
         id: of the run.
         task: name of the task.
         created_ns: when it was made [ns since the Unix epoch].
-        mode: of learning: default, or paper as it was published.
+        mode: of learning; paper is as it was published.
         demonstrations: how many it learned from.
         paths: ids of the learned paths, one for each cluster.
     """
@@ -172,7 +175,7 @@ class RunSummary:
     id: str
     task: str
     created_ns: int
-    mode: str
+    mode: LearningMode
     demonstrations: int
     paths: tuple[str, ...]
 

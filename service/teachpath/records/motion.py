@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal
 
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
 from teachpath.records.later_fields import LATER
+
+ShapeKind = Literal["box", "cylinder", "sphere", "mesh"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +31,7 @@ class Shape:
     """
 
     name: str
-    kind: str
+    kind: ShapeKind
     size: tuple[float, ...]
     position: Vector
     color: int = 0x8090A0

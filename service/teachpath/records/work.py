@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
 from teachpath.records.assessments import Failure
+
+JobKindName = Literal["learn", "recut", "plan", "import"]
 
 
 class JobState(StrEnum):
@@ -25,7 +28,7 @@ class Job:
     Attributes:
         id: of the job.
         task: name of the task.
-        kind: learn, recut, plan or import.
+        kind: what it does.
         request: what was ordered, as its kind takes it.
         state: where it stands.
         fraction: of the work that is done, 0 to 1.
@@ -43,7 +46,7 @@ class Job:
 
     id: str
     task: str
-    kind: str
+    kind: JobKindName
     request: dict[str, object]
     state: JobState
     fraction: float

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from teachpath.records import Array, Trajectory
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 TIME_UNITS = {"s": 1_000_000_000, "ms": 1_000_000, "us": 1000, "ns": 1}  # nanoseconds
 QUATERNION_ORDERS = ("wxyz", "xyzw")
+
+ReadOption = Literal["columns", "time", "track", "units"]
 
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
@@ -49,19 +51,19 @@ class OpenQuestion:
 
     Attributes:
         problem: what is open, or wrong as it was read.
-        option: that answers it: columns, time, track or units.
+        option: that answers it.
         values: of the option that may be right; empty: any.
     """
 
     problem: str
-    option: str
+    option: ReadOption
     values: tuple[str, ...] = ()
 
 
 class OptionNeeded(UnusableRecording):
     """A file cannot be read as it was asked for; an option would mend it."""
 
-    def __init__(self, problem: str, option: str, *values: str) -> None:
+    def __init__(self, problem: str, option: ReadOption, *values: str) -> None:
         super().__init__(problem, option, *values)  # which a process that reads files sends back
         self.question: OpenQuestion = OpenQuestion(problem, option, values)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ from teachpath.motion.refusals import describe
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timing import estimate_duration
 from teachpath.nurbs import Curve
-from teachpath.records import Assessment, Failure, Scene
+from teachpath.records import Assessment, Failure, PathFault, Scene
 
 ASSESSED_SAMPLES: Final = 100  # intervals between the samples of an assessment
 
@@ -115,7 +115,7 @@ def _inspect(tool_path: ToolPath, model: CollisionModel, settings: MotionSetting
     return _Inspection(tool_path, settings, nodes, candidate, clearances, failure)
 
 
-def _sample_faults(inspection: _Inspection) -> tuple[str, ...]:
+def _sample_faults(inspection: _Inspection) -> tuple[PathFault | Literal[""], ...]:
     """Return for every sample the first fault between it and the next one; empty where there is none."""
     node_words, failure = node_faults(inspection.candidate, inspection.settings), inspection.failure
     if failure is not None and failure.fault == "collision":
@@ -128,7 +128,7 @@ def _sample_faults(inspection: _Inspection) -> tuple[str, ...]:
     words = [word or ("collision" if close else "") for word, close in zip(words, near, strict=True)]
     if failure is not None and failure.fault == "start":
         words[0] = "start"
-    return tuple(words)
+    return tuple(cast(list[PathFault | Literal[""]], words))  # numpy has them as texts
 
 
 def _describe_success(candidate: Candidate, clearances: list[Clearance], duration: float | None) -> str:

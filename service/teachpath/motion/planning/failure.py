@@ -17,10 +17,10 @@ from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.suggestion import fault_margin, margin_shortfall, suggest_move
 from teachpath.motion.refusals import refusal
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Failure, Suggestion, Vector
+from teachpath.records import Failure, PathFault, Suggestion, Vector
 
 # An arm at the end of its reach is singular shortly before; the reason why it cannot go on is the one to tell.
-FAULT_PRIORITY: Final = ("reach", "limit", "turn", "singular")
+FAULT_PRIORITY: Final[tuple[PathFault, ...]] = ("reach", "limit", "turn", "singular")
 
 
 def first_failing_range(failing: NDArray[np.bool_]) -> tuple[int, int]:
@@ -113,7 +113,9 @@ def _collision_failure(
     return _failure(tool_path, "collision", (first, last), reason, suggestion)
 
 
-def _failure(tool_path: ToolPath, fault: str, nodes: tuple[int, int], reason: str, suggestion: Suggestion) -> Failure:
+def _failure(
+    tool_path: ToolPath, fault: PathFault, nodes: tuple[int, int], reason: str, suggestion: Suggestion
+) -> Failure:
     first, last = nodes
     x, y, z = (float(v) for v in tool_path.positions[first])
     position: Vector = (x, y, z)
