@@ -15,18 +15,20 @@ from teachpath_client.check_commands import add_driver_check, add_tracker_check
 from teachpath_client.devices import TouchSource, configure, describe_sources, open_source
 from teachpath_client.devices.cyberglove import GloveSettings
 from teachpath_client.errors import ClientError
-from teachpath_client.link import Link
+from teachpath_client.link import Link, given_login
 from teachpath_client.live import HapticFeedback, calibrate_glove, ended_by_signals, record_live
 from teachpath_client.pedal import pedal_or_none
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.replay import read_mcap
+from teachpath_client.ros2.commands import ABOUT as ABOUT_ROS2
+from teachpath_client.ros2.commands import add_ros2
 from teachpath_client.station import Station
 from teachpath_client.status import Status
 from teachpath_client.synthetic import experiment_1, experiment_2
 from teachpath_client.tracker import Routine, Tracker
 from teachpath_client.tracker_calibration import COLUMNS, lines, measure_points, read_points
 from teachpath_proto import tracker_pb2
-from teachpath_proto.logins import read_logins
+from teachpath_proto.logins import Role
 from teachpath_proto.reports import report_document
 
 ReadingFilter = Callable[[Iterator[HandReading]], Iterator[HandReading]]
@@ -45,6 +47,7 @@ ABOUT = {
     "replay": "Play stored demonstrations as if they were live: every sample again at its pace, recorded anew.",
     "driver-check": "Check a driver of an arm before a station moves the arm by it: setpoints come late, doubled, in "
     "bursts or not at all, and a verdict is given for every rule of the contract. No station is needed.",
+    "ros2": ABOUT_ROS2,
     "tracker-check": "Check a tracker of your own before a station records from it: the check listens as a station "
     "does, your tracker connects and shows something once, and a verdict is given for every rule of the contract "
     "(proto/README.md). No station is needed.",
@@ -94,6 +97,7 @@ def parser_of_commands() -> argparse.ArgumentParser:
     replay.set_defaults(run=_replay)
     add_driver_check(commands.add_parser("driver-check", help="check a driver of an arm against the contract"))
     add_tracker_check(commands.add_parser("tracker-check", help="check a tracker against the contract"))
+    add_ros2(commands.add_parser("ros2", help="show the arm to ROS 2: joint states, TF, the trajectory of a plan"))
     for command in (tracker, synthetic, replay):
         command.add_argument("--task", default="demo", help="what is demonstrated (%(default)s)")
         command.add_argument("--scene", default="", help="makes a new task with this scene, e.g. paper or empty")
@@ -232,15 +236,7 @@ def _calibrate_tracker(options: argparse.Namespace) -> None:
 
 
 def _link(options: argparse.Namespace) -> Link:
-    try:
-        login = next(iter(read_logins(Path(options.login))), None) if options.login else None
-    except ValueError as error:
-        raise ClientError(str(error)) from None
-    if options.login and login is None:
-        raise ClientError(
-            f"there is no login in {options.login}; make one with: teachpath login create NAME --role tracker"
-        )
-    return Link(options.endpoint, login=login)
+    return Link(options.endpoint, login=given_login(options.login, Role.TRACKER))
 
 
 def _synthetic(options: argparse.Namespace) -> None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import socket
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import zenoh
 import zenoh.ext
 
 from teachpath_client.errors import ClientError
-from teachpath_proto.logins import Login, Role, find_login, logins_path
+from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins
 from teachpath_proto.sessions import joining, open_session
 
 CACHE_SIZE = 1024  # samples that a subscriber which missed some can still ask for
@@ -89,6 +90,21 @@ class Link:
             f"the station did not answer {key} within {timeout:g} s; if it runs, does its setting bus.prefix stand at "
             "the head of that key? It is named with --prefix"
         )
+
+
+def given_login(file: str, role: Role) -> Login | None:
+    """Return the login in a file that `teachpath login create` wrote; None where no file is named.
+
+    Raises:
+        ClientError: there is none in it, or it cannot be read.
+    """
+    try:
+        login = next(iter(read_logins(Path(file))), None) if file else None
+    except ValueError as error:
+        raise ClientError(str(error)) from None
+    if file and login is None:
+        raise ClientError(f"there is no login in {file}; make one with: teachpath login create NAME --role {role}")
+    return login
 
 
 def _open_without_login(endpoint: str, timeout: float) -> zenoh.Session | None:

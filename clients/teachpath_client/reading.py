@@ -21,6 +21,7 @@ class HandReading:
         flexions: 18 or 22 values from 0 (open) to 1 (closed), or none.
         tracked: False when the pose is a guess of the device.
         buttons: bit 0 = grasp held.
+        device_ns: the device's own stamp [ns since the Unix epoch]; None: `time` counts from when the first one came.
     """
 
     time: float
@@ -29,13 +30,14 @@ class HandReading:
     flexions: tuple[float, ...] = ()
     tracked: bool = True
     buttons: int = 0
+    device_ns: int | None = None
 
     def message(self, sequence: int, start_ns: int) -> tracker_pb2.HandSample:
-        """Return the sample on the wire; `start_ns` is the device's clock at time 0."""
+        """Return the sample on the wire; `start_ns` is the device's clock at time 0, where it has no stamps."""
         w, x, y, z = self.orientation or (0.0, 0.0, 0.0, 0.0)
         return tracker_pb2.HandSample(
             sequence=sequence,
-            device_ns=start_ns + round(self.time * 1e9),
+            device_ns=start_ns + round(self.time * 1e9) if self.device_ns is None else self.device_ns,
             position=tracker_pb2.Vector3(x=self.position[0], y=self.position[1], z=self.position[2]),
             orientation=tracker_pb2.Quaternion(w=w, x=x, y=y, z=z),
             flexions=self.flexions,

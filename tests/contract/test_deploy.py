@@ -29,14 +29,15 @@ def dockerfile() -> list[str]:
     return [line for line in text.splitlines() if line and not line.startswith("#")]
 
 
-def test_systemd_takes_the_unit() -> None:
+@pytest.mark.parametrize("name", ["teachpath.service", "teachpath-ros2.service"])
+def test_systemd_takes_the_unit(name: str) -> None:
     program = shutil.which("systemd-analyze")
     if program is None:
         pytest.skip("no systemd-analyze; get it with: sudo apt-get install systemd")
-    command = [program, "verify", str(DEPLOY / "teachpath.service")]
+    command = [program, "verify", str(DEPLOY / name)]
     said = subprocess.run(command, capture_output=True, text=True, timeout=HANG).stderr
     faults = [line for line in said.splitlines() if "is not executable" not in line]  # it is not installed here
-    assert [line for line in faults if "teachpath.service" in line] == []
+    assert [line for line in faults if name in line] == []
 
 
 def test_the_unit_gives_the_service_no_more_than_it_needs() -> None:

@@ -21,6 +21,8 @@ from teachpath_client.synthetic import GOAL, RATE, START, experiment_1
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
 from tests.system.processes import Service
+from tests.unit.clients.ros2 import golden
+from tests.unit.clients.ros2.peer import RmwPeer
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
@@ -102,3 +104,54 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     assert np.linalg.norm(positions[0] - START) < 0.01
     assert np.linalg.norm(positions[-1] - GOAL) < 0.02
     assert np.ptp(np.array(trajectory.times)) > 3.16 - 0.5  # transport time of the hand, and what the machine adds
+
+
+def test_a_demonstration_from_a_topic_of_ros_2(service: Service) -> None:
+    shown = list(itertools.islice(experiment_1(), SHOWN))
+    pose, grasp = "geometry_msgs/msg/PoseStamped", "std_msgs/msg/Bool"
+    words = ["tracker", "--source", "ros2", "--option", "topic=/hand", "--option", "grasp=/closed", "--task", "ros"]
+    words += ["--scene", "paper", "--tracker", TRACKER, "--endpoint", service.endpoint]
+    with RmwPeer() as peer:
+        peer.announce("MP", "/hand", pose)
+        peer.announce("MP", "/closed", grasp, number=2)
+        stamps = itertools.count(golden.STAMP_NS, round(1e9 / RATE))
+        client = subprocess.Popen(
+            [sys.executable, "-m", "teachpath_client", *words, "--option", f"router={peer.router}"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+        def put(reading: HandReading) -> None:
+            closed = sum(reading.flexions) / len(reading.flexions) > 0.5
+            peer.put("/closed", grasp, golden.GRASP if closed else golden.OPEN)
+            peer.put("/hand", pose, golden.posed(next(stamps), reading.position))
+
+        def comes() -> bool:
+            put(shown[0])
+            report = recording(service)
+            return report is not None and report.received > 5
+
+        def is_cut() -> bool:
+            put(shown[-1])
+            report = recording(service)
+            return report is not None and len(report.demonstrations) > 0
+
+        try:
+            wait_until(comes, f"the station receives; the client ended with {client.poll()}")
+            for reading in shown:
+                put(reading)
+            wait_until(is_cut, "it was cut")
+            os.kill(client.pid, signal.SIGINT)
+            out, err = client.communicate(timeout=HANG)
+        finally:
+            client.kill()
+            client.wait(HANG)
+    assert client.returncode == 0, err
+    report = json.loads(out)
+    assert (report["lost"], report["refused"], len(report["demonstrations"])) == (0, 0, 1), report
+    trajectory = service.station.trajectory(report["demonstrations"][0])
+    assert np.linalg.norm(np.array(trajectory.positions[0]) - START) < 0.01
+    assert np.linalg.norm(np.array(trajectory.positions[-1]) - GOAL) < 0.02
+    steps = np.diff(np.array(trajectory.times))
+    assert np.allclose(steps, 1.0 / RATE)  # as stamped by the headers, though they came as fast as they could

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -19,6 +21,7 @@ from teachpath_client.errors import JobFailed
 from teachpath_client.models import Plan
 from tests.system.processes import Service, family
 from tests.system.test_station import record
+from tests.unit.clients.ros2.peer import RmwPeer
 from tests.waiting import HANG, wait_until
 
 ARM = Arm.of_variant()
@@ -109,3 +112,28 @@ def test_an_executor_that_dies_leaves_the_arm_at_rest_on_its_path(service: Servi
     wait_until(lambda: motion_of(service, execution.id).states[-1].stopped, "the arm follows its way to rest")
     wait_until(lambda: np.abs(motion_of(service, execution.id).states[-1].velocity).max() < 0.01, "the arm stands")
     assert off_path(motion_of(service, execution.id)) <= OFF_PATH
+
+
+def test_the_plan_and_what_the_arm_does_reach_ros_2(service: Service, plan: Plan) -> None:
+    words = ["--endpoint", service.endpoint, "--url", service.url, "--plan", plan.id]
+    with RmwPeer() as peer:
+        peer.announce("MS", "/teachpath/joint_trajectory", "trajectory_msgs/msg/JointTrajectory")
+        command = [sys.executable, "-m", "teachpath_client", "ros2", "--router", peer.router]
+        listed = subprocess.run([*command, "--topics"], capture_output=True, text=True, timeout=HANG, check=True)
+        assert listed.stdout == ""  # nobody publishes yet
+        bridge = subprocess.Popen([*command, *words], stderr=subprocess.PIPE, text=True)
+
+        def heard(topic: str) -> list[bytes]:
+            return [content for key, content, _ in list(peer.heard) if key.startswith(f"0/{topic}/")]
+
+        try:
+            topics = ("joint_states", "tf", "teachpath/joint_trajectory")
+            wait_until(lambda: all(heard(topic) for topic in topics) or bridge.poll() is not None, "all come")
+            bridge.send_signal(signal.SIGTERM)
+            _, said = bridge.communicate(timeout=HANG)
+        finally:
+            bridge.kill()
+            bridge.wait(HANG)
+    assert (bridge.returncode, "Traceback" in said) == (0, False), said
+    assert f"plan {plan.id}: published on /teachpath/joint_trajectory" in said
+    assert heard("teachpath/joint_trajectory") == [service.station.program(plan.id, "cdr")]
