@@ -148,6 +148,10 @@ class _TextFormatter(logging.Formatter):
         record.number = f" [{number}]" if number else ""
         return super().format(record)
 
+    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802 - the library's name
+        # What somebody sent may stand in it, who could begin a line of his own or write into the reader's terminal.
+        return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in super().formatMessage(record))
+
 
 class _JsonFormatter(logging.Formatter):
     def format(self, record: logging.LogRecord) -> str:

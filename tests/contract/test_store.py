@@ -163,8 +163,15 @@ def test_a_name_is_of_a_person_or_of_a_token_and_of_one_alone(store: Store) -> N
     store.access_tokens.add(a_token("cell-3", "b" * 64))
     with pytest.raises(Conflict, match="taken by a person or a token"):
         store.people.add(Person("cell-3", (), "hash", 50, 50))
+    for alike in ("Cell-3", "ANNA"):  # which a journal would not tell apart
+        with pytest.raises(Conflict, match="taken by"):
+            store.people.add(Person(alike, (), "hash", 50, 50))
+        with pytest.raises(Conflict, match=r"'(cell-3|anna)'"):
+            store.access_tokens.add(a_token(alike, "c" * 64))
+        with pytest.raises(Conflict, match="taken by"):
+            store.people.register(Person(alike, (), "", 50, 50, "https://lab.example", "7"))
     store.access_tokens.revoke("cell-3", 60)
-    store.people.add(Person("cell-3", (), "hash", 70, 70))
+    store.people.add(Person("Cell-3", (), "hash", 70, 70))
 
 
 # the tables

@@ -53,6 +53,14 @@ def test_a_line_of_text_has_the_same(capsys: pytest.CaptureFixture[str]) -> None
     datetime.fromisoformat(said.split(" ", 1)[0])
 
 
+def test_what_somebody_sent_begins_no_line_and_moves_no_cursor(capsys: pytest.CaptureFixture[str]) -> None:
+    log_to_stderr()
+    logging.getLogger("teachpath.x").info("PUT /tasks/%s: 422", "a\n2026-11-30 ERROR forged\r\x1b[2Jé\u202e")
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert said.endswith(r"PUT /tasks/a\n2026-11-30 ERROR forged\r\x1b[2Jé\u202e: 422" + "\n")
+
+
 def test_the_lines_of_another_process_stand_among_the_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log_to_stderr(part="executor", attached=True)
     continue_request("abc")

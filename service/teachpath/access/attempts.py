@@ -7,6 +7,7 @@ from collections import OrderedDict, deque
 from collections.abc import Callable
 from typing import Final
 
+from teachpath.access.senders import sender_of
 from teachpath.errors import TooManyAttempts
 
 WINDOW: Final = 300.0  # [s] in which failures are counted
@@ -65,4 +66,5 @@ class Attempts:
 
 
 def _keys(name: str, address: str) -> tuple[tuple[tuple[str, str], int], ...]:
-    return ((name, address), MAX_OF_NAME), (("", address), MAX_FROM_ADDRESS)
+    sender = sender_of(address)
+    return ((name, sender), MAX_OF_NAME), (("", sender), MAX_FROM_ADDRESS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from ipaddress import IPv6Address, ip_address
+from urllib.parse import urlsplit
 
 from teachpath.errors import UnusableSettings
 
@@ -35,6 +36,14 @@ def host_of(authority: str) -> str:
     if authority.startswith("["):
         return authority[: authority.find("]") + 1]
     return authority.partition(":")[0]
+
+
+def authority_of(origin: str) -> str:
+    """Return `host:port` of the header Origin, in small letters; empty where it names none or is no address."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return ""
 
 
 def require_safe_binding(mode: str, host: str, hosts: Collection[str], proxies: Collection[str] = ()) -> None:

@@ -26,8 +26,9 @@ class MemoryPeople:
     def register(self, person: Person) -> Person:
         """Keep a person of a provider under its first name, with the roles that it has now; raises Conflict."""
         known = next((p for p in self.all() if (p.issuer, p.subject) == (person.issuer, person.subject)), None)
-        if known is None and person.name in self._people:
-            raise Conflict(f"the name {person.name!r} is taken by a person; take another")
+        taken = next((name for name in self._people if name.lower() == person.name.lower()), "")
+        if known is None and taken:
+            raise Conflict(f"the name {taken!r} is taken by a person; take another")
         kept = replace(known, roles=person.roles) if known else person
         self.put(kept)
         return kept

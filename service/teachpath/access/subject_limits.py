@@ -6,17 +6,16 @@ import time
 from collections import Counter, OrderedDict
 from collections.abc import Callable
 from enum import StrEnum
-from ipaddress import IPv6Address, ip_address
 from typing import Final
 
 from teachpath.access.access import STRANGER
+from teachpath.access.senders import sender_of
 from teachpath.access.settings import LimitSettings
 from teachpath.errors import TooManyRequests
 from teachpath.records import Subject
 
 MAX_KNOWN: Final = 10_000  # subjects whose rate is remembered; beyond, the oldest is forgotten
 RETRY_AFTER: Final = 1.0  # [s] after which something that is under way may have ended
-NETWORK_BITS: Final = 64  # of an IPv6 address, by which one machine has as many addresses as it likes
 
 
 class Kind(StrEnum):
@@ -88,10 +87,4 @@ def subject_name(subject: Subject, address: str) -> str:
     """Return by which name the limits of a subject are counted: its own, else its address."""
     if subject.name and subject is not STRANGER:
         return subject.name
-    try:
-        number = ip_address(address)
-    except ValueError:
-        return f"address {address or 'unknown'}"
-    if isinstance(number, IPv6Address):
-        number = number.ipv4_mapped or IPv6Address(int(number) >> NETWORK_BITS << NETWORK_BITS)
-    return f"address {number}"
+    return f"address {sender_of(address) or 'unknown'}"

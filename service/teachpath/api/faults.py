@@ -103,6 +103,11 @@ def answer_errors(app: FastAPI) -> None:
         if error.status_code == 405:
             methods = _allowed(request)
             error, headers = HTTPException(405 if methods else 404), {"Allow": ", ".join(methods)} if methods else {}
+        if error.status_code == 400:  # of a body, which FastAPI reads first
+            try:
+                await require_access(request)
+            except (NotSignedIn, NotAllowed) as refusal:
+                return await answer(request, refusal)
         kind = HTTPStatus(error.status_code).phrase
         return refuse(error.status_code, _sentence(request, headers, error), kind, headers=headers)
 
@@ -168,4 +173,6 @@ def _sentence(request: Request, headers: dict[str, str], error: HTTPException) -
         return f"there is nothing at {place}; the resources are listed at /docs"
     if error.status_code == 405:
         return f"{place} is not possible; allowed here: {headers['Allow']}"
+    if error.status_code == 400:
+        return f"the body of {place} is no JSON that can be read: not UTF-8, nested too deeply, or a number is too long"
     return str(error.detail)

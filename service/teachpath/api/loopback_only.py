@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from typing import Final
-from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from teachpath.access.loopback import WAY_OUT, host_of, is_loopback
+from teachpath.access.loopback import WAY_OUT, authority_of, host_of, is_loopback
 from teachpath.api.problems import refuse
 
 FORWARDED: Final = ("forwarded", "x-forwarded-for", "x-forwarded-host", "x-real-ip", "via")  # headers of proxies
@@ -39,7 +38,7 @@ def _fault(scope: Scope) -> str:
         if not is_loopback(host_of(authority)):
             return f"the header Host is {authority[:80]!r}"
     for origin in headers.getlist("origin"):
-        if not is_loopback(host_of(urlsplit(origin).netloc)):
+        if not is_loopback(host_of(authority_of(origin))):
             return f"a page of {origin[:80]!r} asks"
     passed = next((name for name in FORWARDED if name in headers), "")
     return f"a proxy has passed this on (header {passed})" if passed else ""

@@ -7,11 +7,11 @@ from collections.abc import Awaitable, Callable, Collection, Mapping
 from contextlib import suppress
 from functools import partial
 from typing import Any, Final, Protocol, TypeVar
-from urllib.parse import urlsplit
 
 from fastapi import WebSocket, WebSocketDisconnect
 from starlette.websockets import WebSocketState
 
+from teachpath.access.loopback import authority_of
 from teachpath.api.send_pacer import pacer_of_running_loop
 from teachpath.api.strict_requests import unknown_name
 
@@ -35,7 +35,7 @@ Source = TypeVar("Source", bound=MessageSource[Any])
 def same_origin(headers: Mapping[str, str]) -> bool:
     """Tell whether a request comes from our own page, or from no page at all (no Origin header)."""
     origin = headers.get("origin")
-    return origin is None or urlsplit(origin).netloc.lower() == headers.get("host", "").lower()
+    return origin is None or authority_of(origin) == (headers.get("host", "").lower() or None)
 
 
 async def accept(socket: WebSocket, *, parameters: Collection[str] = ()) -> bool:

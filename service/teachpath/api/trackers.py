@@ -24,12 +24,13 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from starlette.concurrency import run_in_threadpool
 
 from teachpath.api import sockets
-from teachpath.api.access import DEMONSTRATE
+from teachpath.api.access import DEMONSTRATE, SUBJECT
 from teachpath.api.parts import Parts
 from teachpath.api.strict_requests import unknown_name
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath.io.wire import MAX_SAMPLE_SIZE
 from teachpath.recorder.websocket_trackers import WebSocketTracker
+from teachpath.records import Subject
 
 SILENCE_TIMEOUT: Final = 10.0  # [s] after which a page that says nothing, not even a ping, has gone
 MAX_SESSION_LENGTH: Final = 64  # characters of the secret by which a page comes back
@@ -61,7 +62,8 @@ def trackers_router(parts: Parts, *, silence: float = SILENCE_TIMEOUT) -> APIRou
                 loop.call_soon_threadsafe(dismissed.put_nowait, why)
 
         try:
-            tracker = parts.websocket_trackers.register(name, leave, session[:MAX_SESSION_LENGTH])
+            subject: Subject = socket.scope[SUBJECT]
+            tracker = parts.websocket_trackers.register(name, leave, session[:MAX_SESSION_LENGTH], subject=subject.name)
         except TeachpathError as error:
             await sockets.close(socket, str(error))
             return

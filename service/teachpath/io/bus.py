@@ -45,8 +45,8 @@ class Handle(Protocol):
 class Bus(Protocol):
     """What every kind of bus can do."""
 
-    def publish(self, key: str, payload: bytes) -> None:
-        """Send `payload` to all subscribers of `key`."""
+    def publish(self, key: str, payload: bytes, *, source: str | None = None) -> None:
+        """Send `payload` to all subscribers of `key`; `source` is who sends behind this session, None: itself."""
 
     def subscribe(self, key: str, receive: Receive) -> Handle:
         """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any)."""
@@ -156,14 +156,14 @@ class ZenohBus:
         self._publishers: dict[str, Any] = {}
         self._handles: list[Handle] = []
 
-    def publish(self, key: str, payload: bytes) -> None:
-        """Send `payload` to all subscribers of `key`, from this session; waits while the way out is full."""
+    def publish(self, key: str, payload: bytes, *, source: str | None = None) -> None:
+        """Send `payload` to all subscribers of `key`; waits while the way out is full. See `Bus`."""
         with self._lock:
             publisher = self._publishers.get(key)
             if publisher is None:
                 publisher = self._session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
                 self._publishers[key] = publisher
-        publisher.put(payload, attachment=self._source)
+        publisher.put(payload, attachment=self._source if source is None else source)
 
     def subscribe(self, key: str, receive: Receive) -> Handle:
         """Call `receive(key, payload)` on Zenoh's thread for all that is published on keys matching `key`."""

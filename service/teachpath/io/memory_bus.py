@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 import threading
+from typing import Final
 
 from teachpath.errors import Unreachable
 from teachpath.io.bus import Answer, Changed, Declaration, Handle, Missed, Receive, ReceiveWithSource
+
+THIS_PROCESS: Final = "this process"  # who publishes, unless somebody else is named
 
 
 class MemoryBus:
@@ -19,12 +22,12 @@ class MemoryBus:
         self._tokens: list[str] = []
         self._watchers: dict[Declaration, tuple[re.Pattern[str], Changed]] = {}
 
-    def publish(self, key: str, payload: bytes, *, source: str = "this process") -> None:
-        """Call the receivers of `key` in this thread, in the order of their subscriptions, as if from `source`."""
+    def publish(self, key: str, payload: bytes, *, source: str | None = None) -> None:
+        """Call the receivers of `key` in this thread, in the order of their subscriptions, as from `source`."""
         with self._lock:
             receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]
         for receive in receivers:
-            receive(key, payload, source)
+            receive(key, payload, THIS_PROCESS if source is None else source)
 
     def subscribe(self, key: str, receive: Receive) -> Handle:
         """Call `receive(key, payload)` for all that is published on keys matching `key` (`*` one segment, `**` any)."""

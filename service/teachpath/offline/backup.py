@@ -69,7 +69,7 @@ def back_up(settings: StoreSettings, into: Path, progress: Progress = lambda fra
         raise Conflict(f"{into} is there already; name a new folder")
     part = into.with_name(f".{into.name}{TEMPORARY}")
     with _removed_unless_whole(part):
-        part.mkdir(parents=True)
+        part.mkdir(parents=True, mode=0o700)  # hashes of passwords are in the database
         copy_database(file, part / DATABASE)
         found = _copy_files(settings, part, progress)
         _sync(part)

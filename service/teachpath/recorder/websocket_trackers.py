@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hmac
 import secrets
 import threading
 import time
@@ -43,15 +44,22 @@ class WebSocketTrackers:
         self._lock = threading.Lock()
         self._trackers: dict[str, WebSocketTracker] = {}
         self._unregistered: dict[str, float] = {}  # by name: when
+        self._secret = secrets.token_bytes()  # by which nobody else names himself as the service names them
 
-    def register(self, name: str, on_disconnect: OnDisconnect, session: str = "") -> WebSocketTracker:
+    def register(
+        self, name: str, on_disconnect: OnDisconnect, session: str = "", *, subject: str = ""
+    ) -> WebSocketTracker:
         """Register a tracker; an earlier connection of the same session is disconnected.
+
+        All are behind the service's one session on the bus. Where the station knows who somebody is, each sends as a
+        source of its own: an arm that one leads follows nobody else who takes the name when it is left.
 
         Args:
             name: of the tracker, unique at the station.
             on_disconnect: called with a sentence, from any thread, when the tracker is disconnected.
             session: secret of who connects, by which it comes back before its broken connection is given up; empty: it
                 has none, and waits for that.
+            subject: who it is by token or sign-in; empty where the station asks nobody.
 
         Raises:
             UnusableInput: the name cannot be a key.
@@ -65,7 +73,10 @@ class WebSocketTrackers:
                 self._check_free(name, self._recorder.trackers())
             elif not secrets.compare_digest(before.session.encode(), session.encode()) or not session:
                 raise Conflict(f"a tracker {name} is connected already; choose another name")
-            tracker = WebSocketTracker(self._bus, self._keys, self._recorder, name, on_disconnect, self._clock, session)
+            source = self._source_of(subject) if subject else None
+            tracker = WebSocketTracker(
+                self._bus, self._keys, self._recorder, name, on_disconnect, self._clock, session, source
+            )
             self._trackers[name] = tracker
         if before is not None:
             before.disconnect(f"{name} has connected again")
@@ -81,6 +92,10 @@ class WebSocketTrackers:
                 recent = {name: at for name, at in self._unregistered.items() if now - at < REANNOUNCE_GRACE}
                 self._unregistered = recent | {tracker.name: now}
         tracker.withdraw()
+
+    def _source_of(self, subject: str) -> str:
+        """Return by which name a subject sends on the bus, of the form that sessions have."""
+        return hmac.digest(self._secret, subject.encode(), "sha256").hex()[:32]
 
     def _check_free(self, name: str, trackers: Sequence[Tracker]) -> None:
         just_left = self._clock() - self._unregistered.get(name, -REANNOUNCE_GRACE) < REANNOUNCE_GRACE
@@ -111,12 +126,13 @@ class WebSocketTracker:
         on_disconnect: OnDisconnect,
         clock: Callable[[], float],
         session: str,
+        source: str | None,
     ) -> None:
         self.name: str = name
         self.session: str = session
         self.accepted: int = 0
         self.refused: int = 0
-        self._bus = bus
+        self._bus, self._source = bus, source
         self._recorder = recorder
         self._clock = clock
         self._on_disconnect = on_disconnect
@@ -157,7 +173,7 @@ class WebSocketTracker:
         self._limit_rate()
         try:
             payload = sample_payload(content)
-            self._bus.publish(self._samples_key, payload)
+            self._bus.publish(self._samples_key, payload, source=self._source)
             decode_sample(self.name, payload, 0)
         except UnusableSample as error:
             return self.refuse(str(error))

@@ -156,6 +156,16 @@ def test_guessing_is_slow_by_name_and_by_address() -> None:
     assert guesser.tried("anna") == MAX_OF_NAME
 
 
+def test_guessing_from_one_network_of_ipv6_is_guessing_from_one_address() -> None:
+    guesser = Guesser()
+    for i in range(MAX_OF_NAME):
+        assert guesser.tried("anna", f"fe80::{i}:1", most=1) == 1
+    assert guesser.tried("anna", "fe80::ffff:1") == 0
+    assert guesser.tried("anna", "fe80:0:0:1::1", most=1) == 1
+    assert guesser.tried("anna", "::ffff:10.0.0.7") == MAX_OF_NAME
+    assert guesser.tried("anna", "10.0.0.7") == 0
+
+
 def test_who_mistyped_and_then_signs_in_is_free_again() -> None:
     guesser = Guesser()
     for _ in range(MAX_OF_NAME - 1):

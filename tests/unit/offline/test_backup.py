@@ -1,5 +1,7 @@
 """A backup is consistent while others write, is compared before it comes back, and overwrites nothing."""
 
+import os
+import stat
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -7,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
+from teachpath.io.store.database_files import DATABASE
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.backup import back_up, restore
@@ -35,6 +38,20 @@ def test_what_was_backed_up_comes_back(data: Path, tmp_path: Path) -> None:
     assert rows_of(tmp_path / "again") == rows_of(data)
     assert contents(tmp_path / "again") == contents(data)
     assert contradictions(tmp_path / "again") == []
+
+
+def test_nobody_else_reads_the_data_or_a_backup(tmp_path: Path) -> None:
+    umask = os.umask(0o022)
+    try:
+        make_station(tmp_path / "data", 1)
+        back_up(of(tmp_path / "data"), tmp_path / "backup")
+        (tmp_path / "open").mkdir()
+        Store(of(tmp_path / "open")).close()
+    finally:
+        os.umask(umask)
+    for folder in ("data", "backup"):
+        assert stat.S_IMODE((tmp_path / folder).stat().st_mode) == 0o700
+    assert {stat.S_IMODE(f.stat().st_mode) for f in (tmp_path / "open").glob(f"{DATABASE}*")} == {0o600}
 
 
 def test_a_backup_that_is_made_while_rows_are_written_is_whole(data: Path, tmp_path: Path) -> None:

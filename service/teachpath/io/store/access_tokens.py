@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.store.engine import lock_name
-from teachpath.io.store.people import NAMES
+from teachpath.io.store.people import NAMES, looks_like
 from teachpath.io.store.tables import AccessTokenRow, PersonRow
 from teachpath.records import AccessToken, Capability
 
@@ -27,12 +27,13 @@ class AccessTokens:
     def add(self, token: AccessToken) -> None:
         """Keep a token; raises Conflict when another one of its name holds."""
         with Session(self._writing) as session, session.begin():
-            lock_name(session, NAMES, token.name)
-            if session.get(PersonRow, token.name):
-                raise Conflict(f"a person has the name {token.name!r}; take another for the token")
-            same = session.scalars(select(AccessTokenRow).where(AccessTokenRow.name == token.name))
-            if any(_token_of(row).holds(token.created_ns) for row in same):
-                raise Conflict(f"there is a token {token.name!r} already; revoke it first, or take another name")
+            lock_name(session, NAMES, token.name.lower())
+            person = session.scalars(select(PersonRow.name).where(looks_like(PersonRow.name, token.name))).first()
+            if person:
+                raise Conflict(f"a person has the name {person!r}; take another for the token")
+            same = session.scalars(select(AccessTokenRow).where(looks_like(AccessTokenRow.name, token.name)))
+            if taken := next((row.name for row in same if _token_of(row).holds(token.created_ns)), ""):
+                raise Conflict(f"there is a token {taken!r} already; revoke it first, or take another name")
             session.add(
                 AccessTokenRow(
                     digest=token.digest,
@@ -48,7 +49,7 @@ class AccessTokens:
     def revoke(self, name: str, now_ns: int) -> AccessToken:
         """Revoke the token of a name that holds, and return it; raises NotFound."""
         with Session(self._writing) as session, session.begin():
-            lock_name(session, NAMES, name)
+            lock_name(session, NAMES, name.lower())
             rows = session.scalars(select(AccessTokenRow).where(AccessTokenRow.name == name)).all()
             row = next((row for row in rows if _token_of(row).holds(now_ns)), None)
             if row is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Final
 
@@ -20,13 +20,24 @@ TIMEOUT: Final = 5.0  # [s] for which a copy waits for somebody who writes
 
 
 def make_data_folder(settings: StoreSettings) -> Path:
-    """Return the folder of a store; made when missing. Raises StorageUnavailable."""
+    """Return the folder of a store; made when missing, for its user alone. Raises StorageUnavailable."""
     folder = Path(settings.data_dir)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     except OSError as error:
         raise storage_fault(error, folder) or error from None
     return folder
+
+
+def make_database_file(settings: StoreSettings) -> None:
+    """Make the file of a database where there is none, for its user alone: hashes of passwords are in it.
+
+    SQLite gives the files beside it the same mode, and says what is wrong where it cannot be made.
+    """
+    file = database_file(settings)
+    if file is not None and not file.exists():
+        with suppress(OSError):
+            file.touch(mode=0o600)
 
 
 def database_url(settings: StoreSettings) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from sqlalchemy import Engine, delete, select, update
+from sqlalchemy import ColumnElement, Engine, delete, func, select, update
+from sqlalchemy.orm import InstrumentedAttribute
 from sqlalchemy.orm import Session as Transaction
 
 from teachpath.errors import Conflict, NotFound
@@ -10,7 +11,7 @@ from teachpath.io.store.engine import lock_name
 from teachpath.io.store.tables import AccessTokenRow, PersonRow, SessionRow
 from teachpath.records import Capability, Person, Session
 
-NAMES = "name of access"  # of people and tokens: none is used twice
+NAMES = "name of access"  # of people and tokens: none is used twice, nor in other letters, large or small
 
 
 class People:
@@ -27,7 +28,7 @@ class People:
     def add(self, person: Person) -> None:
         """Keep a person; raises Conflict when somebody or a token that holds has the name."""
         with Transaction(self._writing) as transaction, transaction.begin():
-            lock_name(transaction, NAMES, person.name)
+            lock_name(transaction, NAMES, person.name.lower())
             _add(transaction, person)
 
     def register(self, person: Person) -> Person:
@@ -41,7 +42,7 @@ class People:
         """
         same = select(PersonRow).where(PersonRow.issuer == person.issuer, PersonRow.subject == person.subject)
         with Transaction(self._writing) as transaction, transaction.begin():
-            lock_name(transaction, NAMES, person.name)
+            lock_name(transaction, NAMES, person.name.lower())
             row = transaction.scalars(same).first()
             if row is None:
                 row = _add(transaction, person)
@@ -103,15 +104,21 @@ class People:
             transaction.execute(delete(SessionRow).where(SessionRow.digest.in_(digests)))
 
 
+def looks_like(column: InstrumentedAttribute[str], name: str) -> ColumnElement[bool]:
+    """Return the condition that a name differs from another in large and small letters at most."""
+    return func.lower(column) == name.lower()
+
+
 def _add(transaction: Transaction, person: Person) -> PersonRow:
     """Add a person under a name that nobody has; raises Conflict."""
-    tokens = select(AccessTokenRow).where(
-        AccessTokenRow.name == person.name,
+    tokens = select(AccessTokenRow.name).where(
+        looks_like(AccessTokenRow.name, person.name),
         AccessTokenRow.revoked_ns == 0,
         AccessTokenRow.expires_ns > person.created_ns,
     )
-    if transaction.get(PersonRow, person.name) or transaction.scalars(tokens).first():
-        raise Conflict(f"the name {person.name!r} is taken by a person or a token; take another")
+    people = select(PersonRow.name).where(looks_like(PersonRow.name, person.name))
+    if taken := transaction.scalars(people).first() or transaction.scalars(tokens).first():
+        raise Conflict(f"the name {taken!r} is taken by a person or a token; take another than {person.name!r}")
     row = PersonRow(
         name=person.name,
         roles=list(person.roles),

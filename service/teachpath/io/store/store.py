@@ -20,7 +20,7 @@ from teachpath.io.store.calibrations import MeasuredCalibrations
 from teachpath.io.store.change_feed import ChangeFeed
 from teachpath.io.store.changes import Changed, changing, unheard
 from teachpath.io.store.checks import Checks
-from teachpath.io.store.database_files import database_file, database_url, make_data_folder
+from teachpath.io.store.database_files import database_file, database_url, make_data_folder, make_database_file
 from teachpath.io.store.engine import lock_name, open_engine
 from teachpath.io.store.imported_files import ImportedFiles
 from teachpath.io.store.job_claims import UNFINISHED, JobClaims
@@ -51,6 +51,7 @@ class Store:
     def __init__(self, settings: StoreSettings, *, opener: Opener = open_new, changed: Changed = unheard) -> None:
         """Open the database; `opener` opens the files of new recordings, `changed` hears of every changed row."""
         folder = make_data_folder(settings)
+        make_database_file(settings)
         self.recordings: Recordings = Recordings(folder / RECORDINGS, opener, settings.recordings, settings.cache_size)
         self.motions: Motions = Motions(folder / "executions", opener)
         engine = open_engine(database_url(settings))

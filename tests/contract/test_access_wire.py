@@ -1,0 +1,82 @@
+"""Attacks by what no browser sends: broken origins and bodies, names that look alike, another's tracker."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from httpx import Response
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from teachpath.io.wire import encode_sample
+from teachpath.records import Capability
+from tests.contract import access_matrix
+from tests.contract.desk import Desk, refused
+from tests.contract.guarded import Guarded, opened
+from tests.unit.recording.hands import sample
+from tests.waiting import wait_until
+
+BROKEN = ["http://[evil", "localhost://[x", "http://[::1", "http://127.0.0.1:8765@[", "null", "", "a page", "//"]
+BODIES = [b"[" * 100_000, b"1" * 5000, b"\x1f\x8b\x08\x00\xff", b'{"name": "\xc3\x28"}']
+JSON = {"Content-Type": "application/json"}
+
+
+@pytest.fixture(scope="module")
+def guarded() -> Iterator[Guarded]:
+    with opened() as guarded:
+        yield guarded
+
+
+@pytest.mark.parametrize("origin", BROKEN)
+def test_an_origin_that_is_no_address_gives_no_orders(guarded: Guarded, desk: Desk, origin: str) -> None:
+    admin = guarded.headers(Capability.ADMINISTER) | {"Origin": origin}
+    refused(guarded.desk.post("/tokens", {"name": "x", "roles": ["view"]}, headers=admin), 403, "may not give orders")
+    with pytest.raises(InvalidStatus) as found:
+        connect(f"ws://127.0.0.1:{guarded.port}/api/v1/events", additional_headers=admin)
+    assert found.value.response.status_code == 403
+    refused(desk.get("/tasks", headers={"Origin": origin}), 403, "asks, and this station answers its own machine")
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_a_body_that_cannot_be_read_tells_nobody_more_than_he_may_know(guarded: Guarded, body: bytes) -> None:
+    def sent(headers: dict[str, str]) -> Response:
+        return guarded.desk.send("POST", "/api/v1/lease", content=body, headers=headers | JSON)
+
+    refused(sent({}), 401, "send a token")
+    refused(sent(guarded.headers(Capability.DEMONSTRATE)), 403, "this needs operate")
+    refused(sent(guarded.headers(Capability.OPERATE)), 400, "no JSON that can be read")
+
+
+@pytest.mark.parametrize("role", Capability)
+def test_a_role_is_never_refused_what_the_matrix_grants(guarded: Guarded, role: Capability) -> None:
+    (token,) = (t for t in guarded.station.store.access_tokens.all() if t.name == role.value)
+    for method, path, need in access_matrix.needs(guarded.station.web):
+        if method in ("POST", "PUT", "PATCH", "DELETE") and need in token.capabilities:
+            address = re.sub(r"\{.*?\}", "moon", path)
+            answer = guarded.desk.send(method, address, headers=guarded.headers(role) | JSON, content=b"no json")
+            assert answer.status_code in (200, 201, 202, 204, 404, 409, 422, 503), (method, address, answer.text)
+
+
+@pytest.mark.parametrize("name", ["Operate", "OPERATE", "oPERATE"])
+def test_nobody_is_named_as_another_but_for_large_letters(guarded: Guarded, name: str) -> None:
+    admin, taken = guarded.headers(Capability.ADMINISTER), "'operate'"
+    refused(guarded.desk.post("/tokens", {"name": name, "roles": ["view"]}, headers=admin), 409, taken)
+    person = {"name": name, "roles": ["view"], "password": "four words together"}
+    private = admin | {"Host": "127.0.0.1"}
+    refused(guarded.desk.post("/people", person, headers=private), 409, taken)
+
+
+def test_whoever_takes_the_tracker_that_another_left_is_another_source(guarded: Guarded) -> None:
+    """Else an arm that one leads would follow him: demonstrating does not let anybody move it."""
+    url, sources = f"ws://127.0.0.1:{guarded.port}/api/v1/trackers/left/samples", list[str]()
+    handle = guarded.station.bus.subscribe_with_source(
+        guarded.station.keys.samples("left"), lambda _, payload, source: sources.append(source)
+    )
+    for count, role in enumerate((Capability.OPERATE, Capability.DEMONSTRATE, Capability.OPERATE), 1):
+        with connect(url, additional_headers=guarded.headers(role)) as tracker:
+            tracker.send(encode_sample(sample(count, (0.5, 0.0, 0.5))))
+            wait_until(lambda: len(sources) == count, "the sample has come")  # noqa: B023 - called within the turn
+        wait_until(lambda: not guarded.has_tracker("left"), "the tracker has gone")
+    handle.close()
+    operator, other, operator_again = sources
+    assert operator == operator_again != other
