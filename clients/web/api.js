@@ -24,6 +24,8 @@ export class ApiError extends Error {
  */
 export const isPassing = (error) => error instanceof ApiError && [0, 429, 502, 503, 504].includes(error.status);
 
+export const RETRY_DELAY = 3000; // [ms] after which it is
+
 const KEEP_TIME = 60_000; // [ms] that a file is kept for the browser to save it
 const PAGE_SIZE = 500; // entries of a list that are asked for at a time, as many as the service gives
 

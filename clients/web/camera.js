@@ -2,6 +2,7 @@
 // x forward of the arm, y up, z its right.
 
 const MARGIN = 1.05; // of the picture around what it is fitted to
+const MAX_FOOT = 1 / 3; // of the view that its controls may take from what is fitted
 const [HIGHEST, LOWEST] = [0.01, 1.75]; // [rad] from straight above
 const COLUMN = { radius: 0.25, height: 1.15 }; // [m] that stands for the arm, whose own box would jump with its pose
 
@@ -9,7 +10,8 @@ const COLUMN = { radius: 0.25, height: 1.15 }; // [m] that stands for the arm, w
 export const VIEWPOINTS = { home: [0.7, 0.47, 0.7], front: [1, 0.02, 0], side: [0, 0.02, 1], top: [0.01, 1, 0] };
 
 /**
- * Fit boxes into the view, seen from a direction: those of the scene and the arm's workspace when none are given.
+ * Fit boxes into the view, above the controls at its foot, seen from a direction: those of the scene and the arm's workspace
+ * when none are given.
  * @param {MeshCatViewer} viewer
  * @param {number[]} from a direction, see VIEWPOINTS
  * @param {THREE.Vector3[]} corners of what is to be seen
@@ -20,6 +22,7 @@ export function fitCamera(viewer, from = VIEWPOINTS.home, corners = sceneBoxes(v
   camera.fov = 30;
   const tall = Math.tan((camera.fov * Math.PI) / 360);
   const wide = tall * camera.aspect;
+  const foot = footShare(viewer.renderer.domElement);
   const ahead = new THREE.Vector3().fromArray(from).normalize();
   const right = new THREE.Vector3(0, 1, 0).cross(ahead).normalize();
   const up = ahead.clone().cross(right);
@@ -28,9 +31,10 @@ export function fitCamera(viewer, from = VIEWPOINTS.home, corners = sceneBoxes(v
   for (let round = 0; round < 4; round++) {
     const relative = corners.map((corner) => corner.clone().sub(target));
     const seen = relative.map((p) => ({ x: p.dot(right), y: p.dot(up), z: p.dot(ahead) }));
-    distance = MARGIN * Math.max(...seen.map((p) => p.z + Math.max(Math.abs(p.x) / wide, Math.abs(p.y) / tall)));
+    const needed = seen.map(({ x, y }) => Math.max(Math.abs(x) / wide, y / tall, -y / (tall * (1 - 2 * foot))));
+    distance = MARGIN * Math.max(...seen.map((p, i) => p.z + needed[i]));
     const [x, y] = [middle(seen.map((p) => p.x / (distance - p.z))), middle(seen.map((p) => p.y / (distance - p.z)))];
-    target.addScaledVector(right, x * distance).addScaledVector(up, y * distance);
+    target.addScaledVector(right, x * distance).addScaledVector(up, (y - foot * tall) * distance);
   }
   camera.position.copy(target).addScaledVector(ahead, distance);
   viewer.controls.target.copy(target);
@@ -64,6 +68,13 @@ export function moveCamera(viewer, { around = 0, over = 0, nearer = 1 }) {
     .multiplyScalar(distance / nearer)
     .add(controls.target);
   update(viewer);
+}
+
+/** The share of the view's height that the controls at its foot cover. @param {HTMLElement} canvas */
+function footShare(canvas) {
+  const controls = canvas.closest(".stage")?.querySelector(".tools");
+  const covered = controls ? canvas.getBoundingClientRect().bottom - controls.getBoundingClientRect().top : 0;
+  return Math.min(Math.max(covered / Math.max(canvas.clientHeight, 1), 0), MAX_FOOT);
 }
 
 /** @param {MeshCatViewer} viewer */

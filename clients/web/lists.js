@@ -1,8 +1,7 @@
 // Reads the lists of the state: whole, page by page, and after that only what has changed.
-import { get, getList, getPage, isPassing, resourcePath } from "./api.js";
+import { get, getList, getPage, isPassing, RETRY_DELAY, resourcePath } from "./api.js";
 
 const MAX_SINGLE_READS = 20; // changed entries; when there are more, the list is read whole
-const RETRY_DELAY = 3000; // [ms] after which a list that could not be read is read again
 
 /** @typedef {"tasks" | "executions" | "demonstrations" | "runs" | "jobs"} ListName a list of the state */
 

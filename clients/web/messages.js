@@ -1,4 +1,5 @@
-// The message line: every error with what to do, every outcome worth a word, perhaps with its undo; read aloud by screen readers.
+// The message line: every error with what to do, every outcome worth a word, perhaps with its undo; read aloud by screen readers,
+// for which it is always there: of one that appears together with its text some read nothing.
 import { element } from "./elements.js";
 
 const NOTE_DURATION = 6000; // [ms] of a note; an error stays until it is closed or another attempt succeeds
@@ -27,7 +28,6 @@ export class Messages {
     // an error interrupts the screen reader, a note waits its turn
     this.place.setAttribute("role", kind === "error" ? "alert" : "status");
     this.place.replaceChildren(element("p", { class: kind }, text), ...(action ? [this.#button(action)] : []), close);
-    this.place.hidden = false;
     if (kind === "note" && !action) this.#timer = setTimeout(() => this.clear(), NOTE_DURATION);
   }
 
@@ -41,7 +41,6 @@ export class Messages {
   clear() {
     clearTimeout(this.#timer);
     this.place.replaceChildren();
-    this.place.hidden = true;
   }
 
   /**

@@ -24,6 +24,7 @@ import { panelHelp } from "./help_links.js";
 import { IdentityControl, missingSentence } from "./identity.js";
 import { Messages } from "./messages.js";
 import { newTaskDialog } from "./new_task.js";
+import { stepByArrows } from "./number_input.js";
 import { panelWidth } from "./panel_width.js";
 import { panel as demonstrate } from "./panels/demonstrate.js";
 import { panel as edit } from "./panels/edit.js";
@@ -155,6 +156,7 @@ byId("panels").addEventListener("click", (event) => {
 connectViewControls(view, store);
 panelWidth(/** @type {HTMLElement} */ (byId("panels").parentElement));
 keepFocus();
+stepByArrows(byId("panels"));
 // The space bar stops the arm wherever the focus is, but in a text field.
 addEventListener(
   "keydown",

@@ -1,7 +1,7 @@
 // Draws the chosen task in the 3-D view: its scene, demonstrations, learned paths, deviations and spread.
 // Names in the view's tree: /scene/NAME, /zones/NAME, while a scene is edited /scene-object/object and /scene-chosen/shape, /demonstrations/ID, /paths/ID, /deviations/ID (of a demonstration), and of a path
 // also /marks/ID, /names/ID, /spread/ID; panels may draw beside them on the overlay.
-import { get, isPassing } from "./api.js";
+import { get, isPassing, RETRY_DELAY } from "./api.js";
 import {
   chosenEdges,
   demonstrationLine,
@@ -18,7 +18,6 @@ import { changesAny, latestPaths, selectedPath, waysOfDemonstrations } from "./s
 import { TrajectoryCache, trimKey } from "./trajectory_cache.js";
 
 const MAX_DEMONSTRATIONS = 200; // newest demonstrations
-const RETRY_DELAY = 3000; // [ms] after which scenes that could not be read are asked for again
 
 /** @typedef {[id: string, key: string, create: () => THREE.Object3D]} Drawing `key`: what it shows; another is drawn anew */
 

@@ -26,13 +26,18 @@ def until_box(visit: Visit, condition: str) -> None:
 ARRIVED = "Math.hypot(...at.map((value, i) => value - target[i])) < 0.005"
 
 
-def begin(visit: Visit, service: Service, task: str, button: str = "Show it here") -> None:
-    """Choose a new task of the paper's scene and begin to show it, without countdown."""
+def choose_new(visit: Visit, service: Service, task: str) -> None:
+    """Choose a new task of the paper's scene, to be shown without countdown."""
     service.station.make_task(task)
     visit.page.wait_for_selector(f"#task option[value={task}]", state="attached")
     visit.page.select_option("#task", task)
     visit.page.locator("#tab-demonstrate").click()
     visit.page.get_by_label("Countdown").select_option("0")
+
+
+def begin(visit: Visit, service: Service, task: str, button: str = "Show it here") -> None:
+    """Choose a new task and begin to show it."""
+    choose_new(visit, service, task)
     visit.page.get_by_role("button", name=button).click()
     phase(visit, "ready")
 

@@ -102,7 +102,7 @@ def test_every_edit_can_be_made_by_keyboard_and_in_numbers(desks: Any, paths: li
     desk.page.keyboard.press("ArrowRight")
     step = desk.curve().control_points[3] - before[3] - [0, 0, 0.011]
     assert np.count_nonzero(np.abs(step) > 1e-9) == 1
-    desk.page.fill("#edit-y", "123.4")
+    desk.page.fill("#edit-y", "12,34 cm")
     desk.page.keyboard.press("Enter")
     desk.page.keyboard.press("Tab")
     assert desk.curve().control_points[3][1] == pytest.approx(0.1234)

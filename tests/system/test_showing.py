@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 from tests.system.carriers import (
-    ARRIVED,
     GOAL,
     HEADSET,
     HEAR,
     START,
     begin,
-    carry,
     carry_worn,
+    choose_new,
     finish,
     has_no_gaps,
     is_judged_by_its_frames,
@@ -25,10 +24,14 @@ from tests.system.carriers import (
     phase,
     until_box,
 )
+from tests.system.keyboard import Keyboard, tell_by_keyboard
+from tests.system.operators import Operator
 from tests.system.processes import Service
+from tests.system.stories import Fingers, Mouse, tell
 from tests.system.test_view import Visit
 
-LOW = START[2] + 0.05  # [m]
+SIZE = (900, 420)  # which leaves the machine to the sampling
+MOST_ACTS = 12  # from the first press to the first motion
 ASSETS = Path(__file__).parent / "assets"
 
 pytestmark = pytest.mark.system
@@ -40,18 +43,20 @@ navigator.getGamepads = () => [pad];
 """
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def visit(browser: Any, service: Service) -> Iterator[Visit]:
-    visit = Visit(browser, service.url, script=GAMEPAD, size=(900, 420))  # which leaves the machine to the sampling
+    visit = Visit(browser, service.url, script=GAMEPAD, size=SIZE)
     yield visit
     visit.page.close()
 
 
-def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Visit, service: Service) -> None:
+def test_the_whole_story_is_told_by_mouse_and_takes_are_discarded_and_brought_back(
+    visit: Visit, service: Service
+) -> None:
     begin(visit, service, "by-mouse")
+    hand = Mouse(visit, actions=1)
     for _ in range(2):
-        carry(visit)
-        phase(visit, "ready")
+        hand.show()
     takes = service.station.demonstrations("by-mouse")
     words = [take.verdict for take in takes]
     assert visit.page.locator("#demonstration-session .demonstration-list li .verdict").all_inner_texts() == words
@@ -65,34 +70,30 @@ def test_takes_by_mouse_are_judged_at_once_discarded_and_brought_back(visit: Vis
     assert [bool(take.discarded_ns) for take in service.station.demonstrations("by-mouse")] == [False, True]
     visit.page.get_by_role("button", name="Undo", exact=True).click()
     visit.page.wait_for_selector("#demonstration-session .demonstration-list li.discarded", state="detached")
-    assert "Recorded 2 demonstrations" in finish(visit)
+    operator = Operator(visit, service.station)
+    assert tell(hand, operator) <= MOST_ACTS
     assert service.station.recordings("by-mouse") == []
-    assert visit.said == []
+    assert operator.said == []
 
 
-def test_a_take_by_keyboard(visit: Visit, service: Service) -> None:
-    begin(visit, service, "by-keys")
-    keys = visit.page.keyboard
-    keys.press("Enter")
-    phase(visit, "carrying")
-    far = f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.1"
-    for key, there in (("PageUp", f"at[2] > {START[2] + 0.1}"), ("ArrowLeft", far), ("PageDown", f"at[2] < {LOW}")):
-        keys.down(key)
-        until_box(visit, there)
-        keys.up(key)
-    keys.press("Enter")
-    phase(visit, "ready")
-    finish(visit)
-    was_carried(service, "by-keys")
+def test_the_whole_story_is_told_by_the_keyboard_alone(visit: Visit, service: Service) -> None:
+    choose_new(visit, service, "by-keys")
+    keys, operator = Keyboard(visit), Operator(visit, service.station)
+    assert tell_by_keyboard(keys, operator) <= MOST_ACTS
+    assert keys.presses < 400
+    was_carried(service, "by-keys", takes=2)
+    assert operator.said == []
 
 
-def was_carried(service: Service, task: str) -> None:
-    (take,) = service.station.demonstrations(task)
-    assert take.verdict != "reject", take.reasons
-    assert has_no_gaps(take)
-    ways = service.station.trajectory(take.id).positions
-    assert max(z for _, _, z in ways) > START[2] + 0.05
-    assert math.dist(ways[-1][:2], START[:2]) > 0.05
+def was_carried(service: Service, task: str, takes: int = 1) -> None:
+    made = service.station.demonstrations(task)
+    assert len(made) == takes
+    for take in made:
+        assert take.verdict != "reject", take.reasons
+        assert has_no_gaps(take)
+        ways = service.station.trajectory(take.id).positions
+        assert max(z for _, _, z in ways) > START[2] + 0.05
+        assert math.dist(ways[-1][:2], START[:2]) > 0.05
 
 
 def test_a_take_by_gamepad(visit: Visit, service: Service) -> None:
@@ -111,31 +112,16 @@ def test_a_take_by_gamepad(visit: Visit, service: Service) -> None:
     was_carried(service, "by-pad")
 
 
-def test_a_take_by_touch_with_a_second_finger_for_the_height(visit: Visit, service: Service) -> None:
+def test_the_whole_story_is_told_by_fingers_on_a_phone(visit: Visit, service: Service) -> None:
+    visit.page.set_viewport_size({"width": 390, "height": 844})
     begin(visit, service, "by-touch")
-    fingers = visit.page.context.new_cdp_session(visit.page)
-
-    def touch(kind: str, *points: tuple[float, float]) -> None:
-        at = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
-        fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": at})
-
-    x, y = visit.project(str(list(START)))
-    touch("touchStart", (x, y))
-    phase(visit, "carrying")
-    second = (x + 120, y)
-    touch("touchStart", (x, y), second)
-    for k in range(1, 5):
-        touch("touchMove", (x, y), (second[0], second[1] - 30 * k))
-    until_box(visit, f"at[2] > {START[2] + 0.1} && {ARRIVED}")
-    for k in range(1, 6):
-        touch(
-            "touchMove", (x + 12 * k, y - 4 * k)
-        )  # without the second finger, which is lifted; the first still carries
-    until_box(visit, f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.06 && {ARRIVED}")
-    touch("touchEnd")
-    phase(visit, "ready")
-    finish(visit)
-    was_carried(service, "by-touch")
+    hand, operator = Fingers(visit, actions=1), Operator(visit, service.station)
+    for _ in range(2):
+        hand.show()
+    assert tell(hand, operator) <= MOST_ACTS
+    was_carried(service, "by-touch", takes=2)
+    assert operator.said == []
+    visit.page.set_viewport_size({"width": SIZE[0], "height": SIZE[1]})
 
 
 def test_a_hidden_page_stops_and_throws_away_what_was_carried(visit: Visit, service: Service) -> None:

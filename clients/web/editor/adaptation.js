@@ -2,6 +2,7 @@
 // saves and certifies the adapted version.
 import { ApiError, get, post, put, resourcePath } from "../api.js";
 import { block, element } from "../elements.js";
+import { numberInput, readNumber } from "../number_input.js";
 import { capitalize } from "../texts.js";
 import { predictPath } from "./adaptation_model.js";
 import { describeCertainty } from "./adaptation_range.js";
@@ -190,15 +191,18 @@ class AdaptationSection {
   #fields(end) {
     return AXES.map((name, axis) => {
       const label = `${name} of ${end === "start" ? "the object" : "the goal"} in millimetres`;
-      const limits = { min: String(-1000 * MAX_COORDINATE), max: String(1000 * MAX_COORDINATE), step: "any" };
-      const input = element("input", { type: "number", id: `edit-${end}-${name}`, "aria-label": label, ...limits });
+      const limits = { min: -1000 * MAX_COORDINATE, max: 1000 * MAX_COORDINATE, unit: "mm" };
+      const input = numberInput({ id: `edit-${end}-${name}`, "aria-label": label, ...limits });
       input.addEventListener("change", () => {
-        if (input.value === "" || !input.checkValidity()) input.value = (1000 * this.#ends[end][axis]).toFixed(1);
-        else {
+        const { value, fault } = readNumber(input);
+        if (value === undefined) {
+          this.editor.context.messages.show(`The ${label} ${input.value || "is empty; it"} ${fault}.`, "error");
+        } else {
           this.#note = "";
-          this.#ends[end] = this.#ends[end].map((value, i) => (i === axis ? Number(input.value) / 1000 : value));
+          this.#ends[end] = this.#ends[end].map((old, i) => (i === axis ? value / 1000 : old));
           this.#redraw();
         }
+        input.value = (1000 * this.#ends[end][axis]).toFixed(1);
       });
       return input;
     });

@@ -66,7 +66,7 @@ export function certificationSection(place, editor, foot) {
         render();
       }
       if (!draft || what === "drag" || what === "feasibility") return;
-      certify.replaceChildren(icon("certify"), `Certify version ${versionTitle(draft.base)}`);
+      certify.replaceChildren(icon("certify"), `Certify version ${draft.base.number}`);
       block(certify, draft.edited ? UNSAVED : "");
       showPrimary();
       why.hidden = !draft.edited;

@@ -1,5 +1,6 @@
 // The control points in numbers: a list to choose from, coordinates in millimetres, the weight, and the pins.
 import { block, element } from "../elements.js";
+import { numberInput, readNumber } from "../number_input.js";
 import { movePoints, setPoint, setWeights } from "./curve_edits.js";
 
 /** @typedef {{input: HTMLInputElement, label: HTMLLabelElement}} Field */
@@ -7,7 +8,7 @@ import { movePoints, setPoint, setWeights } from "./curve_edits.js";
 const AXES = ["x", "y", "z"];
 const MAX_COORDINATE = 10_000; // [mm] the service accepts no more
 const NO_BREAK_SPACE = "\u00a0"; // an option collapses plain ones
-const WEIGHT_RANGE = { min: "0.001", max: "1000" };
+const WEIGHT_RANGE = { min: 0.001, max: 1000 };
 
 /** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function controlPointsSection(place, editor) {
@@ -18,9 +19,9 @@ export function controlPointsSection(place, editor) {
     "aria-label": "control points, several may be chosen",
   });
   const fields = AXES.map((axis) =>
-    field(axis, `${axis} in millimetres`, { min: String(-MAX_COORDINATE), max: String(MAX_COORDINATE), step: "any" }),
+    field(axis, `${axis} in millimetres`, { min: -MAX_COORDINATE, max: MAX_COORDINATE, unit: "mm" }),
   );
-  const weight = field("weight", "weight", { ...WEIGHT_RANGE, step: "any" });
+  const weight = field("weight", "weight", WEIGHT_RANGE);
   const pins = element("input", { type: "checkbox", id: "edit-unlock" });
   const status = element("p", { class: "note", id: "edit-selection" });
   place.append(
@@ -42,13 +43,12 @@ export function controlPointsSection(place, editor) {
     if (!input) return;
     const at = inputs.indexOf(input);
     delete input.dataset.typed;
-    const { value, min, max } = input;
-    if (value === "" || !input.checkValidity()) {
+    const { value, fault } = readNumber(input);
+    if (value === undefined) {
       const name = at < 3 ? AXES[at] : "weight";
-      const rule = `must be a number from ${min} to ${max}`;
-      editor.context.messages.show(`The ${name} ${value || "is empty; it"} ${rule}.`, "error");
-      writeFields(editor, fields, weight);
-    } else applyInput(editor, at, Number(value));
+      editor.context.messages.show(`The ${name} ${input.value || "is empty; it"} ${fault}.`, "error");
+    } else applyInput(editor, at, value);
+    writeFields(editor, fields, weight); // as it is now: a number in its own unit, or what was refused
   });
 
   return {
@@ -63,9 +63,9 @@ export function controlPointsSection(place, editor) {
   };
 }
 
-/** @param {string} name @param {string} label @param {import("../elements.js").Attributes} limits */
+/** @param {string} name @param {string} label @param {{min: number, max: number, unit?: string}} limits */
 function field(name, label, limits) {
-  const input = element("input", { type: "number", id: `edit-${name}`, "aria-label": label, ...limits });
+  const input = numberInput({ id: `edit-${name}`, "aria-label": label, ...limits });
   return { input, label: element("label", {}, name === "weight" ? "weight" : `${name} (mm)`, input) };
 }
 

@@ -49,9 +49,17 @@ function content({ draft, feasibility }) {
   const { failure, duration, sentence: outlook, lengths, clearance } = feasibility.assessment;
   if (!failure) {
     const [length, least] = [lengths[lengths.length - 1], Math.min(...clearance)];
-    const time = duration === null ? "" : `, about ${formatNumber(duration, 2, "s")}`;
+    const time = duration === null ? "" : `, in about ${formatNumber(duration, 2, "s")}`;
     const facts = `${formatNumber(length, 3, "m")}${time}, least clearance ${formatLength(least)}`;
-    return [element("p", { class: "good" }, `${capitalize(outlook)}.`), element("p", { class: "note" }, facts)];
+    return [
+      element("p", { class: "good" }, `The arm can probably follow: ${facts}. Certify it to be sure.`),
+      element(
+        "details",
+        {},
+        element("summary", {}, "Figures"),
+        element("p", { class: "note" }, `${capitalize(outlook)}.`),
+      ),
+    ];
   }
   const { interval, reason, suggestion } = failure;
   const pinned = draft?.isPinned(suggestion.control_point);

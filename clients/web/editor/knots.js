@@ -1,5 +1,6 @@
 // Knots: more of them for finer edits, fewer for a calmer curve, a higher degree; the shape stays.
 import { block, element } from "../elements.js";
+import { numberInput, readNumber } from "../number_input.js";
 import { formatNumber } from "../texts.js";
 import { grevilleAbscissa, innerKnots, spanMidpoint } from "./curve_edits.js";
 
@@ -7,22 +8,20 @@ const MAX_DEGREE = 7;
 
 /** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function knotsSection(place, editor) {
-  const u = element("input", {
-    type: "number",
+  const u = numberInput({
     id: "edit-u",
-    min: "0",
-    max: "1",
-    step: "any",
+    min: 0,
+    max: 1,
+    step: 0.01,
     title: "place of the new knot, from 0 at the start to 1 at the goal",
   });
   const insert = element("button", { type: "button", id: "edit-insert" }, "Insert knot");
   const choice = element("select", { id: "edit-knot" });
-  const allowed = element("input", {
-    type: "number",
+  const allowed = numberInput({
     id: "edit-allowed",
-    min: "0.001",
-    max: "100",
-    step: "any",
+    min: 0.001,
+    max: 100,
+    unit: "mm",
     value: "0.001",
     title: "how far the curve may move",
   });
@@ -51,16 +50,22 @@ export function knotsSection(place, editor) {
       const done = await editor.applyOperation(operation, more, what);
       if (done) editor.context.messages.show(`${what}: the curve moved by ${formatDistance(done.deviation)}.`);
     });
-  insert.addEventListener("click", () =>
-    operate("insert-knot", { u: Number(u.value) }, `Knot inserted at u = ${Number(u.value)}`),
-  );
-  remove.addEventListener("click", () =>
-    operate(
-      "remove-knot",
-      { u: Number(choice.value), tolerance: Number(allowed.value) / 1000 },
-      `Knot removed at u = ${Number(Number(choice.value).toPrecision(4))}`,
-    ),
-  );
+  /** @param {HTMLInputElement} input @param {string} name @returns {number | null} null: it is said what is wrong */
+  const entered = (input, name) => {
+    const { value, fault } = readNumber(input);
+    if (value === undefined)
+      editor.context.messages.show(`${name} ${input.value || "is empty; it"} ${fault}.`, "error");
+    return value ?? null;
+  };
+  insert.addEventListener("click", () => {
+    const at = entered(u, "The place of a knot");
+    if (at !== null) operate("insert-knot", { u: at }, `Knot inserted at u = ${at}`);
+  });
+  remove.addEventListener("click", () => {
+    const [at, most] = [Number(choice.value), entered(allowed, "How far the curve may move")];
+    if (most === null) return;
+    operate("remove-knot", { u: at, tolerance: most / 1000 }, `Knot removed at u = ${Number(at.toPrecision(4))}`);
+  });
   elevate.addEventListener("click", () =>
     operate("elevate", {}, `Degree raised to ${(editor.draft?.curve.degree ?? 0) + 1}`),
   );

@@ -1,6 +1,6 @@
 // The pointer on the control points: select, drag in the plane of the picture, select with a box.
-const PICK_RADIUS = 12; // [px]
-const CLICK_TOLERANCE = 3; // [px] that a click may move
+/** How near a press must be, and how far a click may move. @type {Record<string, {near: number, still: number}>} [px] */
+const PRECISION = { mouse: { near: 12, still: 3 }, pen: { near: 16, still: 4 }, touch: { near: 28, still: 8 } };
 
 /**
  * What a press has begun; at = [x, y] in CSS pixels.
@@ -17,12 +17,13 @@ export function enablePicking(editor, overlay, gizmo) {
   const down = (event) => {
     if (!editor.active || !editor.draft || event.button !== 0 || gizmo.isHovered) return false;
     const at = [event.clientX, event.clientY];
-    const index = nearest(editor.draft.curve.control_points, overlay, at);
+    const { near, still } = PRECISION[event.pointerType] ?? PRECISION.mouse;
+    const index = nearest(editor.draft.curve.control_points, overlay, at, near);
     if (index === null && !event.shiftKey) return false; // the camera's
     overlay.element.focus({ preventScroll: true });
     if (index === null) gesture = new BoxGesture(editor, overlay, at);
     else if (event.shiftKey) gesture = toggle(editor, index);
-    else gesture = new DragGesture(editor, overlay, index, at);
+    else gesture = new DragGesture(editor, overlay, index, at, still);
     return true;
   };
   overlay.capturePointer({
@@ -37,10 +38,10 @@ export function enablePicking(editor, overlay, gizmo) {
  * @param {Point[]} points
  * @param {Overlay} overlay
  * @param {number[]} pixel
+ * @param {number} least
  */
-function nearest(points, overlay, [x, y]) {
+function nearest(points, overlay, [x, y], least) {
   let best = null;
-  let least = PICK_RADIUS;
   for (const [i, point] of points.entries()) {
     const seen = overlay.project(point);
     const off = seen ? Math.hypot(seen[0] - x, seen[1] - y) : Infinity;
@@ -52,8 +53,9 @@ function nearest(points, overlay, [x, y]) {
 class DragGesture {
   #moving = false;
 
-  /** @param {Editor} editor @param {Overlay} overlay @param {number} index @param {number[]} at */
-  constructor(editor, overlay, index, at) {
+  /** @param {Editor} editor @param {Overlay} overlay @param {number} index @param {number[]} at @param {number} still */
+  constructor(editor, overlay, index, at, still) {
+    this.still = still;
     this.editor = editor;
     this.overlay = overlay;
     this.at = at;
@@ -65,7 +67,7 @@ class DragGesture {
   /** @param {number[]} at */
   move(at) {
     if (!this.#moving) {
-      if (Math.hypot(at[0] - this.at[0], at[1] - this.at[1]) <= CLICK_TOLERANCE) return;
+      if (Math.hypot(at[0] - this.at[0], at[1] - this.at[1]) <= this.still) return;
       if (!this.editor.drag.begin()) return;
       this.#moving = true;
     }

@@ -1,5 +1,6 @@
 // One file before it is imported: what was understood, its motion with the marks, what would be made, and corrections.
 import { element, option } from "../elements.js";
+import { numberInput } from "../number_input.js";
 import { verdictExplanation } from "../panels/demonstration_parts.js";
 import { capitalize, formatNumber, pluralize } from "../texts.js";
 import { isMarked } from "./file_import.js";
@@ -16,6 +17,7 @@ const ROLE_NAMES = { t: "time", number: "number", tracked: "tracked", grasp: "gr
 const UNSURE =
   "Not sure where the object was taken and put: press on the curve where the hand takes it, then where it puts it.";
 const OTHER_READING = "Read it otherwise";
+const MAX_RATE = 1_000_000; // [Hz] no file of motion is sampled as often
 /** Where the page answers what a file leaves open. @type {Record<string, string>} */
 const FIELDS = { columns: "Columns", time: "Time", track: "Body, marker or topic", units: "Lengths" };
 
@@ -148,12 +150,12 @@ function markFields({ id, said, report }, { grasp, release }) {
   const end = report?.times.at(-1) ?? 0;
   /** @param {string} field @param {string} name @param {number | null} value */
   const seconds = (field, name, value) => {
-    const input = { type: "number", min: 0, max: end, step: "any", "data-field": field, "data-file": id };
+    const input = { min: 0, max: end, unit: "s", step: 0.02, "data-field": field, "data-file": id };
     return element(
       "label",
       {},
       name,
-      element("input", {
+      numberInput({
         ...input,
         value: value === null ? "" : Number(value.toFixed(3)),
         "data-key": `${field} ${id}`,
@@ -194,7 +196,7 @@ function corrections({ id, choices }, report, isOnly, readers) {
     selectField(id, "time", "Time", OPTIONS.time, choices.time),
     selectField(id, "units", "Lengths", OPTIONS.units, choices.units),
     selectField(id, "quaternion", "Quaternion", OPTIONS.quaternion, choices.quaternion),
-    textField(id, "rate", "Rate [Hz]", choices.rate || "", "number"),
+    rateField(id, choices.rate),
     trackField(id, report.choices, choices.track),
     report.columns.length > 0 && columnFields(id, report.columns, choices.columns),
     !isOnly && element("p", { class: "buttons" }, all),
@@ -203,7 +205,7 @@ function corrections({ id, choices }, report, isOnly, readers) {
 
 /** @param {string} id @param {string[]} names that there are, if the reader tells @param {string} chosen */
 function trackField(id, names, chosen) {
-  if (!names.length) return textField(id, "track", FIELDS.track, chosen, "text");
+  if (!names.length) return textField(id, "track", FIELDS.track, chosen);
   const known = names.includes(chosen) || !chosen ? names : [chosen, ...names];
   const options = known.map((name) => /** @type {[string, string]} */ ([name, name]));
   return selectField(id, "track", FIELDS.track, [["", "none chosen"], ...options], chosen);
@@ -224,28 +226,25 @@ function selectField(id, field, name, options, value) {
   );
 }
 
-/** @param {string} id @param {string} field @param {string} name @param {string | number} value @param {string} type */
-function textField(id, field, name, value, type) {
-  const input = {
-    id: `${field}-${id}`,
-    type,
-    value,
-    "data-field": field,
-    "data-file": id,
-    "data-key": `${field} ${id}`,
-  };
-  return element(
-    "p",
-    { class: "field" },
-    element("label", { for: `${field}-${id}` }, name),
-    element("input", {
-      ...input,
-      autocomplete: "off",
-      min: type === "number" ? 1 : null,
-      step: type === "number" ? "any" : null,
-    }),
-  );
+/** @param {string} id @param {string} field @param {string} name @param {string} value */
+function textField(id, field, name, value) {
+  const input = element("input", { type: "text", value, autocomplete: "off", ...fieldOf(id, field) });
+  return element("p", { class: "field" }, element("label", { for: input.id }, name), input);
 }
+
+/** @param {string} id @param {number} rate [Hz]; 0: none is said */
+function rateField(id, rate) {
+  const input = numberInput({ min: 1, max: MAX_RATE, unit: "Hz", value: rate || "", ...fieldOf(id, "rate") });
+  return element("p", { class: "field" }, element("label", { for: input.id }, "Rate [Hz]"), input);
+}
+
+/** @param {string} id @param {string} field */
+const fieldOf = (id, field) => ({
+  id: `${field}-${id}`,
+  "data-field": field,
+  "data-file": id,
+  "data-key": `${field} ${id}`,
+});
 
 /** @param {string} id @param {string[]} columns @param {string} chosen */
 function columnFields(id, columns, chosen) {

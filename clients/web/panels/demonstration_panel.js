@@ -1,13 +1,15 @@
 // Demonstrations without a glove: by mouse, touch, keyboard, gamepad or headset, one after the other.
 import { get, patch, put, resourcePath } from "../api.js";
-import { block } from "../elements.js";
+import { block, closestData } from "../elements.js";
 import { DemonstrationSession } from "../hand/demonstration_session.js";
 import { SAMPLE_RATE } from "../hand/fixed_rate_timer.js";
 import { XrHand, xrUnavailableReason } from "../hand/xr_hand.js";
 import { isName, nameRefusal } from "../names.js";
+import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
 import { formatNumber, pluralize } from "../texts.js";
 import { createParts, demonstrationRow, senderFacts, sessionText } from "./demonstration_parts.js";
+import { countFresh, learn, learnButton } from "./learning.js";
 
 const HIDDEN = "The page was hidden, so recording has stopped; what was carried is lost.";
 const KEYS = "Carry the box: Enter grasps and lets go, arrows move, Page Up and Page Down change the height";
@@ -38,9 +40,12 @@ class DemonstrationPanel {
     this.context = context;
     this.parts = createParts();
     place.append(...this.parts.all);
-    const { start, headset, finish, discard, undo } = this.parts;
+    const { start, headset, next, finish, discard, undo } = this.parts;
     start.addEventListener("click", () => this.#begin());
     headset.addEventListener("click", () => this.#begin({ withHeadset: true }));
+    next.addEventListener("click", (event) => {
+      if (closestData(event).learn) context.attempt(() => this.#learn());
+    });
     finish.addEventListener("click", () => this.#finish());
     discard.addEventListener("click", () => this.#setDiscarded(true));
     undo.addEventListener("click", () => this.#setDiscarded(false));
@@ -56,6 +61,21 @@ class DemonstrationPanel {
   update(state, changed) {
     if (changed.has("task") && this.session && state.task !== this.session.task) this.#stop("");
     if (changesAny(changed, "tasks", "task")) this.#render();
+    if (changesAny(changed, "demonstrations", "runs", "selectedRun", "jobs", "task")) this.#showNext(state);
+  }
+
+  /** Offer to learn what was shown since it was learned last. @param {State} state */
+  #showNext(state) {
+    const isKnown = state.runs?.length === 0 || state.selectedRun; // what was learned so far
+    const count = isKnown ? countFresh(state) : 0;
+    const words = `${count} ${pluralize(count, "demonstration")}`;
+    patchChildren(this.parts.next, count > 0 && learnButton(state, `Learn the ways of ${words}`));
+    this.parts.start.classList.toggle("primary", count === 0);
+  }
+
+  async #learn() {
+    await learn(this.context.store.state);
+    this.context.open("ways");
   }
 
   async #checkHeadset() {

@@ -34,6 +34,7 @@ export function createParts() {
   const seconds = element("select", { id: "countdown" }, option(0, "none"), option(3, "3 s"), option(5, "5 s"));
   seconds.value = "3";
   const countdown = element("p", { class: "field" }, element("label", { for: "countdown" }, "Countdown"), seconds);
+  const next = element("div", {}); // what can be done with what was shown
   const idle = element(
     "div",
     {},
@@ -41,6 +42,7 @@ export function createParts() {
     nameField,
     countdown,
     element("p", { class: "buttons" }, start, headset),
+    next,
     why,
   );
   const statusText = element("p", { class: "session-status", role: "status" });
@@ -51,7 +53,7 @@ export function createParts() {
   const buttons = element("p", { class: "buttons" }, finish, discard, undo);
   const active = element("div", { hidden: "" }, statusText, demonstrations, buttons, figures);
   const help = element("details", {}, element("summary", {}, "How to carry the box"), definitionList(HELP));
-  const idleParts = { idle, start, headset, why, name, nameField, seconds };
+  const idleParts = { idle, start, headset, next, why, name, nameField, seconds };
   return {
     all: [idle, active, help],
     ...idleParts,

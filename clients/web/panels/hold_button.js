@@ -26,6 +26,7 @@ export function bindHold(button, onPress, onHeld) {
     }, HOLD_TIME);
   };
   button.addEventListener("pointerdown", begin);
+  button.addEventListener("contextmenu", (event) => event.preventDefault()); // a finger that stays asks for it
   button.addEventListener("keydown", (event) => {
     if (!event.repeat && ["Enter", " "].includes(event.key)) begin(event);
   });

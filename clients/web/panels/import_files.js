@@ -6,6 +6,7 @@ import { FileImport, numbered, UNMARKED } from "../files/file_import.js";
 import { importProgress, importSummary, standing } from "../files/import_parts.js";
 import { listenForMarks } from "../files/mark_input.js";
 import { isName, nameRefusal } from "../names.js";
+import { readNumber } from "../number_input.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
 import { capitalize } from "../texts.js";
@@ -129,12 +130,24 @@ class ImportPanel {
       const numbers = { ...parseColumns(file.choices.columns), [role]: target.value };
       this.files.choose(file, { columns: formatColumns(numbers) });
     }
-    if (field === "grasp" || field === "release")
-      this.#mark(id, field, target.value === "" ? null : Number(target.value));
-    else if (field === "rate") this.files.choose(file, { rate: Number(target.value) });
+    if (target instanceof HTMLInputElement && (field === "grasp" || field === "release" || field === "rate"))
+      this.#enter(file, field, target);
     else if (field === "whole" && target instanceof HTMLInputElement) this.files.mark(file, { whole: target.checked });
     else if (field === "motion") this.files.show(file, Number(target.value));
     else if (field) this.files.choose(file, { [field]: target.value });
+  }
+
+  /** @param {import("../files/file_import.js").ImportFile} file @param {"grasp" | "release" | "rate"} field @param {HTMLInputElement} input */
+  #enter(file, field, input) {
+    const { value, fault } = input.value.trim() ? readNumber(input) : { value: null, fault: "" };
+    if (fault) {
+      this.context.messages.show(`${input.value} ${fault}.`, "error");
+      input.value = input.defaultValue; // as it was
+      return;
+    }
+    input.value = String(value ?? "");
+    if (field === "rate") this.files.choose(file, { rate: value ?? 0 });
+    else this.#mark(file.id, field, value ?? null);
   }
 
   /** Mark the motion that is shown; the other mark stays where the program found it. @param {string} id @param {"grasp" | "release"} mark @param {number | null} time */

@@ -1,11 +1,11 @@
 // One card per way, with what is known of its path; and which run is shown.
 import { post, resourcePath } from "../api.js";
-import { blocked, closestData, codeBlock, element, hint, option, tabButton } from "../elements.js";
-import { icon } from "../icons.js";
+import { closestData, codeBlock, element, hint, option, tabButton } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
 import { capitalize, pluralize } from "../texts.js";
 import { markFocus, trackFocus } from "./focus.js";
+import { countFresh, learn, learnButton, usableDemonstrations } from "./learning.js";
 import { pathCard } from "./path_card.js";
 import { PathSummaries } from "./path_summaries.js";
 
@@ -14,7 +14,6 @@ const ABOUT_CARDS =
   "One card for each way that was shown. Choose one and certify it: that proves that the arm can follow, and lets you run it.";
 const ABOUT_LEARNING =
   "Learning finds the different ways, keeps the demonstrations that agree, and fits a smooth path to each way.";
-const BUSY = "The task is being learned now.";
 const NOTHING =
   "Nothing to learn from yet. Show the task a few times first, each way at least three times; then learn it here, or with:";
 
@@ -22,8 +21,8 @@ const NOTHING =
 export function pathCards(place, { store, attempt, open, readOnly }) {
   const pathSummaries = new PathSummaries(store);
   place.addEventListener("click", (event) => {
-    const { learn, plan, edit, run, path } = closestData(event, BUTTONS);
-    if (learn) attempt(() => post(resourcePath("tasks", store.state.task, "jobs"), { kind: "learn" }));
+    const { learn: isLearning, plan, edit, run, path } = closestData(event, BUTTONS);
+    if (isLearning) attempt(() => learn(store.state));
     if (plan) attempt(() => post(resourcePath("paths", plan, "plans")));
     const chosen = path ?? plan ?? edit ?? run;
     if (chosen) store.set({ path: chosen });
@@ -52,7 +51,7 @@ export function pathCards(place, { store, attempt, open, readOnly }) {
 function content(state, readOnly) {
   const { runs, task } = state;
   const run = state.selectedRun;
-  const usable = (state.demonstrations ?? []).filter(isUsable);
+  const usable = usableDemonstrations(state);
   if (!run?.learned.clusters.length) {
     if (runs === null && task) return hint("The runs cannot be read yet: the service does not answer.");
     if (!usable.length) {
@@ -61,7 +60,7 @@ function content(state, readOnly) {
     const count = `${usable.length} ${pluralize(usable.length, "demonstration")} can be learned from.`;
     return [hint(`${count} ${ABOUT_LEARNING}`), learnButton(state, "Learn the ways")];
   }
-  const fresh = usable.filter((d) => !run.learned.demonstrations.includes(d.id)).length;
+  const fresh = countFresh(state);
   return [
     runs && runs.length > 1 && runSelect(runs, run),
     !readOnly && hint(ABOUT_CARDS),
@@ -70,27 +69,6 @@ function content(state, readOnly) {
     run.id === runs?.[0]?.id && fresh > 0 && hint(`${fresh} ${pluralize(fresh, "demonstration")} came after this run.`),
     !readOnly && learnButton(state, fresh > 0 ? "Learn again" : "Learn anew", fresh > 0),
   ];
-}
-
-/** @param {Demonstration} demonstration */
-const isUsable = ({ verdict, mark, discarded_ns }) => verdict !== "reject" && mark !== "bad" && !discarded_ns;
-
-/** @param {State} state @param {string} text @param {boolean} isNext whether it is what to do next */
-function learnButton({ jobs }, text, isNext = true) {
-  const busy = (jobs ?? []).some(
-    ({ state, kind }) => ["running", "queued"].includes(state) && ["learn", "recut"].includes(kind),
-  );
-  const data = { "data-learn": "1", "data-key": "learn" };
-  return element(
-    "p",
-    {},
-    element(
-      "button",
-      { type: "button", class: isNext && "primary", ...data, ...blocked(busy ? BUSY : "") },
-      icon("learn"),
-      text,
-    ),
-  );
 }
 
 /** @param {RunSummary[]} runs @param {Run} selected */

@@ -1,5 +1,6 @@
 // The height of a scene's floor, in millimetres.
 import { block, element } from "../elements.js";
+import { numberInput, readNumber } from "../number_input.js";
 import { MAX_LENGTH, watchTyping, writeInput } from "./shape_fields.js";
 
 export class SceneFloor {
@@ -8,8 +9,7 @@ export class SceneFloor {
    * @param {{scene: () => Scene | null, change: (scene: Scene, what: string) => void, refuse: (sentence: string) => void}} editor
    */
   constructor(place, editor) {
-    const limits = { min: -MAX_LENGTH, max: MAX_LENGTH };
-    this.input = element("input", { type: "number", id: "scene-floor", step: "any", ...limits });
+    this.input = numberInput({ id: "scene-floor", min: -MAX_LENGTH, max: MAX_LENGTH, unit: "mm" });
     const label = element("label", { for: "scene-floor" }, "Height of the floor (mm)");
     place.append(element("p", { class: "field" }, label, this.input));
     watchTyping(this.input);
@@ -29,10 +29,9 @@ export class SceneFloor {
   /** @param {{scene: () => Scene | null, change: (scene: Scene, what: string) => void, refuse: (sentence: string) => void}} editor */
   #enter({ scene: current, change, refuse }) {
     const scene = current();
-    const { value, min, max } = this.input;
+    const { value, fault } = readNumber(this.input);
     if (!scene) return;
-    if (value === "" || !this.input.checkValidity())
-      return refuse(`Height of the floor ${value || "is empty; it"} must be a number from ${min} to ${max}.`);
-    change({ ...scene, floor: Number(value) / 1000 }, "height of the floor");
+    if (value === undefined) return refuse(`Height of the floor ${this.input.value || "is empty; it"} ${fault}.`);
+    change({ ...scene, floor: value / 1000 }, "height of the floor");
   }
 }

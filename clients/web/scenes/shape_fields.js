@@ -1,6 +1,7 @@
 // The chosen shape of a scene in numbers: name, colour, sizes and place in millimetres, turns in degrees.
 import { element, hint } from "../elements.js";
 import { isName, nameRefusal } from "../names.js";
+import { numberInput, readNumber } from "../number_input.js";
 import { capitalize } from "../texts.js";
 import { namesIn } from "./scene_draft.js";
 import { orientationOf, turnsOf } from "./turns.js";
@@ -98,15 +99,11 @@ export class ShapeFields {
       return editor.change({ ...shape, color: Number.parseInt(input.value.slice(1), 16) }, `colour of ${shape.name}`);
     const field = this.numbers.find((one) => one.input === input);
     if (!field) return;
-    const { value, min, max } = input;
     const name = field.name(shape, this.part);
-    if (value === "" && field.clear && !input.validity.badInput)
-      return editor.change(field.clear(shape), `${name} of ${shape.name}`);
-    if (value === "" || !input.checkValidity()) {
-      const rule = `must be a number from ${min} to ${max}`;
-      return editor.refuse(`${capitalize(name)} ${value || "is empty; it"} ${rule}.`);
-    }
-    editor.change(field.write(shape, Number(value)), `${name} of ${shape.name}`);
+    if (input.value === "" && field.clear) return editor.change(field.clear(shape), `${name} of ${shape.name}`);
+    const { value, fault } = readNumber(input);
+    if (value === undefined) return editor.refuse(`${capitalize(name)} ${input.value || "is empty; it"} ${fault}.`);
+    editor.change(field.write(shape, value), `${name} of ${shape.name}`);
   }
 
   /** @param {Shape} shape @param {string} wanted */
@@ -130,12 +127,12 @@ export function writeInput(input, value) {
 
 /**
  * @param {string} id
- * @param {{min: number, max: number, placeholder?: string}} limits
+ * @param {{min: number, max: number, unit?: string, placeholder?: string}} limits
  * @param {Omit<NumberField, "input" | "label" | "caption">} access
  * @returns {NumberField}
  */
 function numberField(id, limits, access) {
-  const input = element("input", { type: "number", id: `shape-${id}`, step: "any", ...limits });
+  const input = numberInput({ id: `shape-${id}`, ...limits });
   const caption = document.createTextNode("");
   return { input, caption, label: element("label", {}, caption, input), ...access };
 }
@@ -160,7 +157,7 @@ const positionFields = () =>
   AXES.map((axis, k) =>
     numberField(
       `position-${axis}`,
-      { min: -MAX_LENGTH, max: MAX_LENGTH },
+      { min: -MAX_LENGTH, max: MAX_LENGTH, unit: "mm" },
       {
         name: () => `${axis} (mm)`,
         read: ({ position }) => 1000 * position[k],
@@ -173,7 +170,7 @@ const turnFields = () =>
   AXES.map((axis, k) =>
     numberField(
       `turn-${axis}`,
-      { min: -360, max: 360 },
+      { min: -360, max: 360, unit: "°" },
       {
         name: () => `turn about ${axis} (°)`,
         read: ({ orientation }) => turnsOf(orientation)[k],
@@ -186,7 +183,7 @@ const turnFields = () =>
 const massField = () =>
   numberField(
     "mass",
-    { min: 0.0001, max: 100, placeholder: "by volume" },
+    { min: 0.0001, max: 100, unit: "kg", placeholder: "by volume" },
     {
       name: (_, part) => (part === "carried" ? "mass (kg)" : ""),
       read: ({ mass }) => mass ?? null,
