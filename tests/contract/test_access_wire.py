@@ -1,5 +1,6 @@
 """Attacks by what no browser sends: broken origins and bodies, names that look alike, another's tracker."""
 
+import asyncio
 import re
 from collections.abc import Iterator
 
@@ -10,7 +11,7 @@ from websockets.sync.client import connect
 
 from teachpath.io.wire import encode_sample
 from teachpath.records import Capability
-from tests.contract import access_matrix
+from tests.contract import access_matrix, stations
 from tests.contract.desk import Desk, refused
 from tests.contract.guarded import Guarded, opened
 from tests.unit.recording.hands import sample
@@ -35,6 +36,20 @@ def test_an_origin_that_is_no_address_gives_no_orders(guarded: Guarded, desk: De
         connect(f"ws://127.0.0.1:{guarded.port}/api/v1/events", additional_headers=admin)
     assert found.value.response.status_code == 403
     refused(desk.get("/tasks", headers={"Origin": origin}), 403, "asks, and this station answers its own machine")
+
+
+@pytest.mark.parametrize("header", ["X-Forwarded-Proto", "X-Forwarded-User", "X-Forwarded-Server", "X-Real-IP", "Via"])
+def test_what_a_proxy_has_passed_on_is_not_of_this_machine(desk: Desk, header: str) -> None:
+    refused(desk.get("/tasks", headers={header: "x"}), 403, f"a proxy has passed this on (header {header.lower()})")
+
+
+def test_a_proxy_that_leaves_a_name_that_a_client_took_names_nobody() -> None:
+    proxy = {"auth": {"mode": "proxy"}, "web": {"proxies": ["127.0.0.1"]}}
+    with stations.station(**proxy) as station, asyncio.Runner() as loop:
+        behind, two = Desk(station, loop), [("X-Forwarded-User", "anna"), ("X-Forwarded-User", "otto")]
+        refused(behind.get("/tasks", headers=two), 401, "2 headers X-Forwarded-User")
+        assert behind.get("/identity", headers=two).json()["name"] == "not signed in"
+        assert behind.get("/identity", headers=two[:1]).json()["name"] == "anna"
 
 
 @pytest.mark.parametrize("body", BODIES)

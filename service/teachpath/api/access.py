@@ -16,9 +16,9 @@ from teachpath.api.middleware import SAFE_METHODS
 from teachpath.api.session_cookie import read_cookie
 from teachpath.errors import NotAllowed, NotSignedIn
 from teachpath.records import Capability, Subject
+from teachpath.web.forwarded import FORWARDED_USER
 
 SUBJECT: Final = "teachpath.subject"  # where the scope of a connection has who sends it
-FORWARDED_USER: Final = "x-forwarded-user"  # who somebody is, where auth.mode is proxy
 MAX_HEADER_LENGTH: Final = 64  # characters of a name or a token of control
 MAX_WHO_LENGTH: Final = 64  # characters of a name in the journal
 Declaration = Sequence[params.Depends]
@@ -49,9 +49,8 @@ async def authorize(
         NotAllowed: the subject lacks the capability.
     """
     access: Access = connection.app.state.access
-    forwarded = connection.headers.get(FORWARDED_USER, "")
     session = _session(connection, access)
-    subject = connection.scope[SUBJECT] = access.subject(authorization, session, forwarded)
+    subject = connection.scope[SUBJECT] = access.subject(authorization, session, _forwarded_user(connection, access))
     if session:
         _require_origin(connection)
     lacking = [name for name in needed.scopes if Capability(name) not in subject.capabilities]
@@ -85,7 +84,7 @@ def identify(connection: HTTPConnection, access: Access) -> Subject:
     try:
         authorization = connection.headers.getlist("authorization")
         session = _session(connection, access)
-        return access.subject(authorization, session, connection.headers.get(FORWARDED_USER, ""))
+        return access.subject(authorization, session, _forwarded_user(connection, access))
     except NotSignedIn:
         return STRANGER
 
@@ -95,6 +94,14 @@ def _session(connection: HTTPConnection, access: Access) -> str:
     if not access.has_sessions or "authorization" in connection.headers:
         return ""
     return read_cookie(connection)
+
+
+def _forwarded_user(connection: HTTPConnection, access: Access) -> str:
+    """Return who somebody is as the proxy says; a proxy that adds a name to the one that a client sent says nothing."""
+    names = connection.headers.getlist(FORWARDED_USER)
+    if len(names) > 1 and access.mode == "proxy":
+        raise NotSignedIn(f"the proxy hands on {len(names)} headers X-Forwarded-User; let it set one in their place")
+    return names[0] if names else ""
 
 
 def _require_origin(connection: HTTPConnection) -> None:

@@ -53,6 +53,7 @@ class AuditLog:
     def __init__(self, folder: Path, now_ns: Callable[[], int] = time.time_ns) -> None:
         self._log, self._head = folder / LOG, folder / HEAD
         self._now_ns = now_ns
+        self._newest: tuple[int, str] | None = None  # number and hash of what this process wrote last
 
     def append(self, happenings: Sequence[Happening]) -> None:
         """Append entries; when it returns, they are on the disk.
@@ -73,6 +74,7 @@ class AuditLog:
                     text += line
                 _write_whole(log.fileno(), text.encode())
                 _write_head(head, number, last)
+                self._newest = number, last
         except OSError as error:
             raise StorageUnavailable(f"cannot write the audit log {self._log}: {error.strerror}") from None
 
@@ -144,9 +146,11 @@ class AuditLog:
         if last is not None and newest is None:
             found.append(Happening(ITSELF, "", BREAK, f"{HEAD} was missing or unreadable"))
         number, hashed = (entry.number, entry.hash) if entry else (0, BEGINNING)
-        if newest is not None and (number < newest[0] or (number == newest[0] and hashed != newest[1])):
-            said = f"entries up to {newest[0]} ({newest[1]}) were written, and are not there"
-            found.append(Happening(ITSELF, "", BREAK, said))
+        for known in (newest, self._newest):  # the head, and what this process remembers where both were made anew
+            if known is not None and (number < known[0] or (number == known[0] and hashed != known[1])):
+                said = f"entries up to {known[0]} ({known[1]}) were written, and are not there"
+                found.append(Happening(ITSELF, "", BREAK, said))
+                break
         return number, hashed, found
 
     @contextmanager

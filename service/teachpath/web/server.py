@@ -11,6 +11,7 @@ from typing import Any, Final
 import uvicorn
 
 from teachpath.web.connections import ConnectionLimits, LimitedProtocol, LimitedWebSocket
+from teachpath.web.forwarded import ForwardedHeaders
 from teachpath.web.settings import WebSettings
 from teachpath.web.tls import TlsOrHttp
 
@@ -54,13 +55,12 @@ def web_server(application: Any, settings: WebSettings, context: ssl.SSLContext 
     limits = ConnectionLimits(settings.request_timeout, allow_connections(settings.max_connections))
     protocol = partial(TlsOrHttp, context, limits) if context else partial(LimitedProtocol, limits)
     config = uvicorn.Config(
-        application,
+        ForwardedHeaders(application, settings.proxies) if settings.proxies else application,
         http=protocol,  # type: ignore[arg-type]  # it is called, whatever it is
         ws=partial(LimitedWebSocket, limits),  # type: ignore[arg-type]
         ws_per_message_deflate=False,
         backlog=ACCEPTS_A_ROUND,
-        proxy_headers=bool(settings.proxies),
-        forwarded_allow_ips=list(settings.proxies),
+        proxy_headers=False,
         log_level="warning",
         access_log=False,
         timeout_graceful_shutdown=1,

@@ -115,6 +115,18 @@ def test_a_log_that_was_made_anew_lacks_what_was_noted_elsewhere(tmp_path: Path)
     assert written(tmp_path, 12).verify(newest.hash) == f"after entry 12: none has the hash {newest.hash}"
 
 
+def test_a_service_that_runs_misses_what_it_wrote_though_all_of_it_is_made_anew(tmp_path: Path) -> None:
+    log = written(tmp_path)
+    newest = log.newest()
+    assert newest is not None
+    for name in (LOG, HEAD):
+        (tmp_path / name).unlink()
+    written(tmp_path, 3)
+    assert log.verify() == ""
+    log.append([happening(10)])
+    assert log.verify() == f"entry 4: entries up to 9 ({newest.hash}) were written, and are not there"
+
+
 def test_what_a_dying_process_left_is_removed_and_breaks_nothing(tmp_path: Path) -> None:
     log = written(tmp_path)
     with (tmp_path / LOG).open("ab") as file:

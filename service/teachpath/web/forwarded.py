@@ -1,0 +1,30 @@
+"""What a proxy says of whom it asks for: believed of the proxies that the settings name alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
+
+FORWARDED_USER: Final = "x-forwarded-user"  # who somebody is, where auth.mode is proxy
+
+
+class ForwardedHeaders:
+    """Takes address and scheme of a client from a named proxy, and the client's name from nobody else.
+
+    Args:
+        application: of ASGI, that is told.
+        proxies: addresses and networks.
+    """
+
+    def __init__(self, application: Any, proxies: Sequence[str]) -> None:
+        self._believing = ProxyHeadersMiddleware(application, list(proxies))
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        """Pass a connection on."""
+        client = scope.get("client")
+        if "headers" in scope and not (client and client[0] in self._believing.trusted_hosts):
+            kept = [(name, value) for name, value in scope["headers"] if name != FORWARDED_USER.encode()]
+            scope = {**scope, "headers": kept}
+        await self._believing(scope, receive, send)
