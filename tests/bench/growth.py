@@ -19,7 +19,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.live.event_hub import EventHub
 from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.recorder.recorder import Lookup, Recorder
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, RecordingRequest
 from teachpath.web.settings import WebSettings

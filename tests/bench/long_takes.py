@@ -11,7 +11,8 @@ from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.recorder.recorder import Lookup, Recorder
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import Lookup
 from teachpath.recorder.recording_work import encode_trajectory
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, RecordingRequest, StopRequest

@@ -18,7 +18,8 @@ from teachpath.io.bus import Bus, BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import empty_scene
-from teachpath.recorder.recorder import Lookup, Recorder
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, RecordingRequest, StopRequest
 from teachpath_proto import tracker_pb2

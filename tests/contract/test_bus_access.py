@@ -16,6 +16,7 @@ from teachpath.errors import Unreachable, UnusableSettings
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
 from teachpath.io.bus_access import BusAccess, granted
 from teachpath.io.bus_logins import local_login, new_password, prepare_access
+from teachpath_client import Link
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
 from tests.ports import free_endpoint
@@ -169,6 +170,16 @@ def test_only_those_answer_who_may(station: tuple[BusSettings, BusAccess, Bus], 
     while not allowed(login, "serve") <= answered:  # its declarations may still be under way
         answered |= {key for key in KEYS if asked(service, key)}
     assert answered == allowed(login, "serve")
+
+
+def test_what_a_tracker_keeps_is_had_from_it(station: tuple[BusSettings, BusAccess, Bus]) -> None:
+    settings, access, service = station
+    key, sent = f"{PREFIX}/trackers/glove/samples", [b"0", b"1", b"2"]
+    with Link(settings.endpoint, login=access.login(Role.TRACKER)) as link:
+        publisher = link.publisher(key)
+        for payload in sent:
+            publisher.put(payload)
+        wait_until(lambda: service.history(key) == sent, "the service has what was sent before it asked")
 
 
 def test_only_those_are_answered_who_may_ask(

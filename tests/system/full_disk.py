@@ -17,7 +17,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_sample
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.recorder.recorder import Lookup, Recorder
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, RecordingRequest, RecordingStatus, Sample, StopRequest
 from teachpath_proto.keys import Keys

@@ -13,7 +13,8 @@ from teachpath.io.bus import BusSettings, listen_on_bus
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_recording_status, encode_sample
-from teachpath.recorder.recorder import Lookup, Recorder
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, RecordingRequest, RecordingStatus, Sample, Scene, Shape, StopRequest
 from teachpath_client import Link

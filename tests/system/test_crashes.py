@@ -14,7 +14,7 @@ from teachpath.io.store.salvage import salvage
 from teachpath_client import HandReading, Link, Tracker
 from teachpath_client.synthetic import experiment_1
 from tests.system.processes import Service, run
-from tests.system.test_station import record, trajectory, write_csv
+from tests.system.test_station import record, trajectory
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
@@ -91,14 +91,3 @@ def test_a_job_under_way_is_run_again_once(tmp_path: Path) -> None:
         assert only.id == ended.outcome
         assert len(next_one.station.jobs("carry")) == 1
         assert only.demonstrations == 12
-
-
-def test_files_are_imported_while_no_service_runs(tmp_path: Path) -> None:
-    data, file = tmp_path / "data", write_csv(tmp_path / "motion.csv")
-    assert run("import", "files", str(file), "--data", str(data), folder=tmp_path).process.returncode == 0
-    torn = run("import", "files", str(tmp_path / "none.csv"), "--data", str(data), folder=tmp_path)
-    assert torn.process.returncode == 1
-    assert torn.err.startswith("teachpath: cannot read")
-    with Service(data) as service:
-        (imported,) = service.station.demonstrations("files")
-        assert len(trajectory(service, imported.id)[0]) == 100

@@ -12,7 +12,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.recorder.queries import RecorderQueries
-from teachpath.recorder.recorder import Lookup, Recorder
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration
 from teachpath_client.__main__ import main

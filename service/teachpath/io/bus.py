@@ -18,10 +18,11 @@ import zenoh
 import zenoh.ext
 
 from teachpath.errors import TeachpathError, Unanswered, Unreachable, UnusableSettings
-from teachpath.io.bus_access import BusAccess, listening_config
+from teachpath.io.bus_access import CACHE_KEYS, BusAccess, listening_config
 from teachpath.io.bus_config import read_bus_config
 from teachpath.io.bus_errors import pack_error, raise_again
 from teachpath.io.bus_settings import BusSettings
+from teachpath.io.declaration import Declaration
 from teachpath_proto.logins import Login
 from teachpath_proto.sessions import joining, listening, open_session
 
@@ -61,6 +62,9 @@ class Bus(Protocol):
         two of them cannot be told apart. A session's name is a secret of those who hear it, as a password is: whoever
         knows it can claim to be that session.
         """
+
+    def history(self, key: str) -> list[bytes]:
+        """Return the newest payloads on `key`, the oldest first, that its publishers with a cache still have."""
 
     def serve(self, key: str, answer: Answer) -> Handle:
         """Answer queries on `key`; a TeachpathError that `answer` raises is raised again where the query was asked."""
@@ -191,6 +195,17 @@ class ZenohBus:
 
         return self._keep(Declaration(undeclare))
 
+    def history(self, key: str) -> list[bytes]:
+        """Return what publishers on `key` still have; see `Bus`. Whoever does not answer in 10 s is passed over."""
+        replies = self._session.get(
+            f"{key}/{CACHE_KEYS}",
+            target=zenoh.QueryTarget.ALL,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            accept_replies=zenoh.ReplyKeyExpr.ANY,
+            timeout=10.0,
+        )
+        return [reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None]
+
     def serve(self, key: str, answer: Answer) -> Handle:
         """Answer queries on `key` in the order they came, on a thread of its own; see `Bus`."""
         return self._keep(_Server(self._session, key, answer))
@@ -247,19 +262,6 @@ def _source(sample: zenoh.Sample) -> str:
         return str(sample.source_info.source_id.zid)
     attachment = b"" if sample.attachment is None else sample.attachment.to_bytes()
     return attachment.decode() if SESSION_ID.fullmatch(attachment) else ""
-
-
-class Declaration:
-    """A handle that calls a function once, when it is closed."""
-
-    def __init__(self, undeclare: Callable[[], object]) -> None:
-        self._undeclare: Callable[[], object] | None = undeclare
-
-    def close(self) -> None:
-        """Call the function, at the first call only."""
-        undeclare, self._undeclare = self._undeclare, None
-        if undeclare is not None:
-            undeclare()
 
 
 class _Server:

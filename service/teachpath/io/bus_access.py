@@ -26,6 +26,7 @@ MESSAGES: Final[dict[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
     "put": (("put",), ("declare_subscriber",)),
     "subscribe": (("declare_subscriber",), ("put", "delete")),
     "serve": (("declare_queryable", "reply"), ("query",)),
+    "repeat": (("reply",), ()),
     "ask": (("query",), ("reply", "declare_queryable")),
     "announce": (("liveliness_token",), ()),
     "watch": (("liveliness_query", "declare_liveliness_subscriber"), ("liveliness_token",)),
@@ -189,7 +190,8 @@ def granted(login: Login, prefix: str) -> dict[str, list[str]]:
         verb: [f"{prefix}/{key.format(only=login.only or '*')}" for key in keys]
         for verb, keys in GRANTS[login.role].items()
     }
-    cached = [f"{key}/{CACHE_KEYS}" for key in found.get("put", [])]
+    found["repeat"] = found.get("put", [])  # from its cache, with the keys under which it was put
+    cached = [f"{key}/{CACHE_KEYS}" for key in found["repeat"]]
     for verb in ("put", "serve"):
         found[verb] = found.get(verb, []) + cached
     return found

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 import threading
+from collections import deque
 from typing import Final
 
 from teachpath.errors import Unreachable
-from teachpath.io.bus import Answer, Changed, Declaration, Handle, Missed, Receive, ReceiveWithSource
+from teachpath.io.bus import Answer, Changed, Handle, Missed, Receive, ReceiveWithSource
+from teachpath.io.declaration import Declaration
 
+CACHE_SIZE: Final = 1024  # payloads of each key, as a client's publisher keeps them
 THIS_PROCESS: Final = "this process"  # who publishes, unless somebody else is named
 
 
@@ -20,11 +23,13 @@ class MemoryBus:
         self._receivers: dict[Declaration, tuple[re.Pattern[str], ReceiveWithSource]] = {}
         self._answers: dict[str, Answer] = {}
         self._tokens: list[str] = []
+        self._caches: dict[str, deque[bytes]] = {}
         self._watchers: dict[Declaration, tuple[re.Pattern[str], Changed]] = {}
 
     def publish(self, key: str, payload: bytes, *, source: str | None = None) -> None:
         """Call the receivers of `key` in this thread, in the order of their subscriptions, as from `source`."""
         with self._lock:
+            self._caches.setdefault(key, deque(maxlen=CACHE_SIZE)).append(payload)
             receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]
         for receive in receivers:
             receive(key, payload, THIS_PROCESS if source is None else source)
@@ -39,6 +44,11 @@ class MemoryBus:
         with self._lock:
             self._receivers[handle] = (_pattern(key), receive)
         return handle
+
+    def history(self, key: str) -> list[bytes]:
+        """Return the newest payloads on `key`, the oldest first: every publisher here keeps them."""
+        with self._lock:
+            return list(self._caches.get(key, ()))
 
     def serve(self, key: str, answer: Answer) -> Handle:
         """Answer queries on `key`, in the thread that asks; a second answer replaces the first."""

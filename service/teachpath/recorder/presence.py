@@ -49,6 +49,11 @@ class Presence:
                 self._announced.discard(tracker)
                 self._last_sample.pop(tracker, None)
 
+    def is_announced(self, tracker: str) -> bool:
+        """Tell whether a tracker is there by a liveliness token."""
+        with self._lock:
+            return tracker in self._announced
+
     def on_sample(self, tracker: str) -> None:
         """Take note of a sample."""
         if tracker in self._last_sample:

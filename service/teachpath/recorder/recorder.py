@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from functools import partial
 
 from teachpath.errors import Conflict
 from teachpath.io.bus import Bus, Handle
@@ -15,24 +14,23 @@ from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.feedback import FeedbackPublisher
 from teachpath.recorder.presence import Presence, Tracker
-from teachpath.recorder.recording_setup import RecordingSetup, check_request
+from teachpath.recorder.recording_setup import Lookup, RecordingSetup, check_request, find_setup
 from teachpath.recorder.recording_thread import RecordingThread
 from teachpath.recorder.recording_work import Call, call_directly
+from teachpath.recorder.resumption import Resumption
 from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.sample_totals import RecordingTotals, SampleTotals
 from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.suspendable_session import SuspendableSession
 from teachpath.recorder.take import FinishedTake
 from teachpath.recorder.tracker_owners import TrackerOwners
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import (
     Amendment,
-    Calibration,
     Demonstration,
-    ObjectPose,
     RecordingRequest,
     RecordingState,
     RecordingStatus,
-    Scene,
     StopRequest,
     Trajectory,
 )
@@ -41,21 +39,6 @@ from teachpath_proto.keys import Keys
 MAX_SHOWN_HANDS = 32  # more would hide each other
 
 log: logging.Logger = logging.getLogger("teachpath")
-
-
-@dataclass(frozen=True)
-class Lookup:
-    """Finds what a recording names; all functions raise NotFound.
-
-    Attributes:
-        scene: returns the scene of a name as it was saved last.
-        calibration: returns the calibration of a name.
-        reported_object: returns where the object of a scene was told to lie; None: where the scene has it.
-    """
-
-    scene: Callable[[str], Scene]
-    calibration: Callable[[str], Calibration]
-    reported_object: Callable[[str], ObjectPose | None] = lambda scene: None
 
 
 @dataclass(frozen=True)
@@ -118,12 +101,25 @@ class Recorder:
             store, settings, lookup.scene, self._callbacks.changed, call, self._recording.wait_for_takes
         )
         self._feedback = FeedbackPublisher(bus, keys, self.statuses, store.demonstration, clock=clock)
+        self._resumption = Resumption(
+            bus,
+            keys,
+            store,
+            self._queues,
+            self._presence,
+            self._recording,
+            self._setup,
+            self._new_session,
+            settings.tracker_return_timeout,
+            clock,
+        )
         self._missed = 0
         self._totals = SampleTotals()
         self._handles: list[Handle] = []
 
     def start(self) -> None:
-        """Begin to listen."""
+        """Go on with the recordings that the last stop left, and begin to listen."""
+        self._resumption.start()
         self._recording.start()
         self._feedback.start()
         self._handles = [
@@ -132,10 +128,11 @@ class Recorder:
         ]
 
     def stop(self) -> None:
-        """End every running recording, keeping what is complete, and stop listening."""
+        """Stop listening, keep what is complete, and leave every running recording for the next start."""
         for handle in self._handles:
             handle.close()
-        self._recording.stop()
+        self._resumption.stop()
+        self._store.recordings.suspensions.keep(self._recording.stop())
         self._feedback.stop()
 
     def begin(self, request: RecordingRequest) -> RecordingStatus:
@@ -162,14 +159,13 @@ class Recorder:
         setup = self._setup(request)
         with self._recording.condition:
             before = sessions.get(tracker)
-            if before is not None:
+            if before is not None and not before.is_waiting:
                 self._recording.drain(before)
-            if before is not None and before.state is not RecordingState.LOST:
+            if before is not None and before.state is not RecordingState.LOST and not before.is_waiting:
                 raise Conflict(f"{tracker} is already recording {before.task}; stop that first")
-            completer = self._recording.take_queue()
-            session = RecordingSession(self._store, self._settings, setup, completer=completer, clock=self._clock)
+            session = self._new_session(setup)
             if before is not None:
-                before.finish()
+                before.finish(torn=before.is_waiting)
                 self._totals.end_recording(before.counter.statistics())
             sessions[tracker] = session
             self._queues.open(tracker)
@@ -264,17 +260,11 @@ class Recorder:
         return self._recording.session(tracker).task
 
     def _setup(self, request: RecordingRequest) -> RecordingSetup:
-        task = self._store.open_task(request.task)
-        return RecordingSetup(
-            task=request.task,
-            tracker=request.tracker,
-            calibration=self._lookup.calibration(request.calibration or task.calibration),
-            scene=self._lookup.scene(task.scene),
-            rate=request.rate,
-            routine=request.routine,
-            reported_object=partial(self._lookup.reported_object, task.scene),
-            object_at_grasp=task.object_at_grasp,
-        )
+        return find_setup(request, self._store, self._lookup)
+
+    def _new_session(self, setup: RecordingSetup) -> SuspendableSession:
+        completer = self._recording.take_queue()
+        return SuspendableSession(self._store, self._settings, setup, completer=completer, clock=self._clock)
 
     def _on_sample(self, key: str, payload: bytes, source: str) -> None:  # on the transport's thread
         self._queues.on_sample(key, payload)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Final
 
 from teachpath.errors import UnusableInput
 from teachpath.io.store.salvage import RecordingHeader
+from teachpath.io.store.store import Store
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.take import random_id
 from teachpath.records import Calibration, ObjectPose, RecordingRequest, Routine, Scene
@@ -49,6 +51,36 @@ class RecordingSetup:
             place.reported,
             self.object_at_grasp,
         )
+
+
+@dataclass(frozen=True)
+class Lookup:
+    """Finds what a recording names; all functions raise NotFound.
+
+    Attributes:
+        scene: returns the scene of a name as it was saved last.
+        calibration: returns the calibration of a name.
+        reported_object: returns where the object of a scene was told to lie; None: where the scene has it.
+    """
+
+    scene: Callable[[str], Scene]
+    calibration: Callable[[str], Calibration]
+    reported_object: Callable[[str], ObjectPose | None] = lambda scene: None
+
+
+def find_setup(request: RecordingRequest, store: Store, lookup: Lookup) -> RecordingSetup:
+    """Return what a request records; raises NotFound, or Conflict where its task is archived."""
+    task = store.open_task(request.task)
+    return RecordingSetup(
+        task=request.task,
+        tracker=request.tracker,
+        calibration=lookup.calibration(request.calibration or task.calibration),
+        scene=lookup.scene(task.scene),
+        rate=request.rate,
+        routine=request.routine,
+        reported_object=partial(lookup.reported_object, task.scene),
+        object_at_grasp=task.object_at_grasp,
+    )
 
 
 def check_request(request: RecordingRequest) -> None:

@@ -15,9 +15,10 @@ from teachpath.periodic_thread import PeriodicThread
 from teachpath.recorder.closed_take import TakeQueue
 from teachpath.recorder.presence import Presence
 from teachpath.recorder.sample_queues import QueueItem, SampleQueues
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.suspendable_session import SuspendableSession
 from teachpath.recorder.take import FinishedTake
 from teachpath.recording.settings import RecordingSettings
+from teachpath.records import SuspendedRecording
 
 FLUSH_INTERVAL = 0.75  # [s] under a second, with a margin for a busy machine
 ROUND_INTERVAL = 0.02  # [s] pause between two rounds; none while more samples wait than one round records
@@ -50,7 +51,7 @@ class RecordingThread:
         settings: RecordingSettings,
         *,
         on_finished: Callable[[FinishedTake], None],
-        on_discard_request: Callable[[RecordingSession], None],
+        on_discard_request: Callable[[SuspendableSession], None],
         clock: Callable[[], float],
     ) -> None:
         self._queues = queues
@@ -59,7 +60,7 @@ class RecordingThread:
         self._on_finished = on_finished
         self._on_discard_request = on_discard_request
         self._clock = clock
-        self.sessions: dict[str, RecordingSession] = {}
+        self.sessions: dict[str, SuspendableSession] = {}
         self.condition: threading.Condition = threading.Condition()
         self.beginning: threading.Lock = threading.Lock()
         self._completing = ThreadPoolExecutor(COMPLETING_THREADS, thread_name_prefix="takes")
@@ -71,20 +72,25 @@ class RecordingThread:
         """Record from now on."""
         self._thread.start()
 
-    def stop(self) -> None:
-        """Record the samples that still wait, end every recording, and stop; a second call does nothing."""
+    def stop(self) -> list[SuspendedRecording]:
+        """Record the samples that still wait, leave every recording for the next start, and stop; return them.
+
+        A second call does nothing.
+        """
         self._thread.stop()
         with self.condition:
             sessions = list(self.sessions.values())
             for session in sessions:
-                self.drain(session)
-                session.finish()
+                if not session.is_waiting:
+                    self.drain(session)
+                session.suspend()
             self.sessions.clear()
         for session in sessions:
             session.completer.wait()
         self._completing.shutdown()
+        return [session.snapshot() for session in sessions]
 
-    def session(self, tracker: str) -> RecordingSession:
+    def session(self, tracker: str) -> SuspendableSession:
         """Return the running recording of a tracker; raises NotFound."""
         session = self.sessions.get(tracker)
         if session is None:
@@ -116,7 +122,7 @@ class RecordingThread:
                 queue.wait()
             yield
 
-    def drain(self, session: RecordingSession) -> None:
+    def drain(self, session: SuspendableSession) -> None:
         """Record all samples of one tracker that wait; the caller holds `condition`."""
         while batch := self._queues.pop(session.tracker, BATCH_SIZE):
             self._record(session, batch)
@@ -136,7 +142,7 @@ class RecordingThread:
         sessions = self._choose(sessions)
         now, more = self._clock(), False
         for session in sessions:
-            if session.completer.is_behind:
+            if session.completer.is_behind or session.is_waiting:
                 continue
             if not self._queues.is_empty(session.tracker) or now - session.last_flush >= FLUSH_INTERVAL:
                 more |= self._process(session, now) == BATCH_SIZE
@@ -144,12 +150,12 @@ class RecordingThread:
                 self._check_silence(session)
         return more
 
-    def _choose(self, sessions: list[RecordingSession]) -> list[RecordingSession]:
+    def _choose(self, sessions: list[SuspendableSession]) -> list[SuspendableSession]:
         begin = self._next_turn if self._next_turn < len(sessions) else 0
         self._next_turn = begin + TURNS_IN_A_ROUND
         return sessions[begin : self._next_turn]
 
-    def _process(self, session: RecordingSession, now: float) -> int:
+    def _process(self, session: SuspendableSession, now: float) -> int:
         with self.condition:
             if self.sessions.get(session.tracker) is not session:  # it has ended; what waits is of the next recording
                 return 0
@@ -162,7 +168,7 @@ class RecordingThread:
             self.condition.notify_all()
         return len(batch)
 
-    def _record(self, session: RecordingSession, batch: list[QueueItem]) -> None:
+    def _record(self, session: SuspendableSession, batch: list[QueueItem]) -> None:
         if batch and batch[-1].payload is not None:
             self._presence.on_sample(session.tracker)
         if dropped := self._queues.dropped(session.tracker):
@@ -170,7 +176,7 @@ class RecordingThread:
         for item in batch:
             self._record_item(session, item)
 
-    def _record_item(self, session: RecordingSession, item: QueueItem) -> None:
+    def _record_item(self, session: SuspendableSession, item: QueueItem) -> None:
         payload, receive_ns = item
         try:
             if payload is None:
@@ -182,7 +188,7 @@ class RecordingThread:
         except Exception as error:  # one take's fault must not end the others
             session.fail(f"recording failed: {error!r}")
 
-    def _check_silence(self, session: RecordingSession) -> None:
+    def _check_silence(self, session: SuspendableSession) -> None:
         limit = self._settings.longest_silence
         if self._presence.silence_of(session.tracker) <= limit:
             return

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from teachpath.recorder.presence import Presence
@@ -93,6 +94,12 @@ class SampleQueues:
         if queue is None:
             return []
         return [queue.items.popleft() for _ in range(min(limit, len(queue.items)))]
+
+    def put_first(self, tracker: str, items: Sequence[QueueItem]) -> None:
+        """Queue items of `tracker` before those that wait."""
+        queue = self._queues.get(self._keys.samples(tracker))
+        if queue is not None:
+            queue.items.extendleft(reversed(items))
 
     def dropped(self, tracker: str) -> int:
         """Return how many samples of `tracker` were dropped since the last call."""

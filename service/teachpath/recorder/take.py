@@ -101,6 +101,18 @@ class Take:
         self._leave(reason)
         self._note(reason)
 
+    def suspend(self) -> str:
+        """Leave its file for the service's next start; return its id, or nothing where its file cannot be written."""
+        if self._file is None:
+            return ""
+        try:
+            self._file.suspend()
+        except OSError as error:
+            self.fail(_disk_fault("written", error))
+            return ""
+        self._file = None
+        return self._id
+
     def can_be_finalized(self, cut: TransportSpan) -> bool:
         """Tell whether a demonstration will come of it, as far as that is known before it is finalized."""
         return self._file is not None and cut.release - cut.grasp >= self._settings.shortest_transport

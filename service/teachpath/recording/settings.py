@@ -68,6 +68,8 @@ class RecordingSettings:
     largest_clock_step: Positive = 0.1
     # [s] a tracker that is silent for longer in mid-take is lost
     longest_silence: Positive = 2.0
+    # [s] from the service's start, in which the tracker of a recording that was running at the stop has to come back
+    tracker_return_timeout: Positive = 30.0
     # [s] counted down before each take, unless a recording says otherwise
     countdown: Annotated[float, Ge(0), Le(60)] = 0.0
     # [s] a fist held still for so long, away from the object, pauses or resumes as it opens; held three times as long

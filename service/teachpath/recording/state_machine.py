@@ -16,15 +16,21 @@ class RecordingStateMachine:
         self._routine = routine
         self._countdown = countdown if routine.countdown is None else routine.countdown
         self._begins_at = 0.0  # the take, while it is counted down
-        self._made = 0
+        self.made: int = 0  # demonstrations that count in the routine
         self.state: RecordingState = RecordingState.PAUSED
         if not routine.armed:
+            self._arm(now)
+
+    def restore(self, state: RecordingState, made: int, now: float) -> None:
+        """Go on where another one stopped, whose routine `made` so many demonstrations; a countdown begins anew."""
+        self.made, self.state = made, state
+        if state is RecordingState.COUNTDOWN:
             self._arm(now)
 
     @property
     def takes_left(self) -> int:
         """How many demonstrations the routine still wants; 0: it sets no number."""
-        return max(self._routine.takes - self._made, 0)
+        return max(self._routine.takes - self.made, 0)
 
     def countdown_left(self, now: float) -> float:
         """Return the time until the countdown ends [s]; 0 when none runs."""
@@ -43,7 +49,7 @@ class RecordingStateMachine:
             self.state = RecordingState.RECORDING
         elif self.state is RecordingState.PAUSED:
             if self._routine.takes and not self.takes_left:
-                self._made = 0  # another series
+                self.made = 0  # another series
             self._arm(now)
 
     def poll_countdown(self, now: float) -> bool:
@@ -65,7 +71,7 @@ class RecordingStateMachine:
 
     def end_take(self, now: float, *, made: bool) -> None:
         """Take note that a take has ended, and prepare the next; `made`: it became a demonstration."""
-        self._made += made
+        self.made += made
         enough = self._routine.takes and not self.takes_left
         if self.state is RecordingState.PAUSING or (made and (enough or self._routine.one_by_one)):
             self.state = RecordingState.PAUSED
@@ -74,7 +80,7 @@ class RecordingStateMachine:
 
     def withdraw_take(self, *, counted: bool) -> None:
         """Take note that a take became no demonstration, although it `counted` as made; a pause that it made stays."""
-        self._made = max(self._made - counted, 0)
+        self.made = max(self.made - counted, 0)
 
     def _arm(self, now: float) -> None:
         self._begins_at = now + self._countdown

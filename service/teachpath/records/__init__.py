@@ -66,6 +66,8 @@ from teachpath.records.recording import (
     RecordingStatus,
     Routine,
     StopRequest,
+    SuspendedRecording,
+    SuspendedRecordings,
     TaskReference,
 )
 from teachpath.records.sample_columns import SampleColumns
@@ -162,6 +164,8 @@ __all__ = [
     "StreamStatistics",
     "Subject",
     "Suggestion",
+    "SuspendedRecording",
+    "SuspendedRecordings",
     "Task",
     "TaskReference",
     "TaughtPoint",

@@ -9,7 +9,7 @@ from functools import cached_property
 from teachpath.errors import UnusableInput
 from teachpath.records.arrays import Pose, Vector
 from teachpath.records.demonstrations import Phase, StreamStatistics
-from teachpath.records.motion import Shape
+from teachpath.records.motion import ObjectPose, Shape
 
 MAX_COUNTDOWN = 60.0  # [s]
 
@@ -60,6 +60,40 @@ class RecordingRequest:
     scene: str = ""  # its name, for a task that does not exist yet; empty: the task must exist
     rate: float = 0.0  # [Hz] that the client declares; 0: it declares none
     routine: Routine = Routine()
+
+
+@dataclass(frozen=True, slots=True)
+class SuspendedRecording:
+    """A recording that a stopped service left, for the next one to go on with.
+
+    Attributes:
+        request: what is recorded, with the calibration that was in use.
+        state: what it did with samples.
+        demonstrations: ids of those made so far.
+        made: how many of them count in the routine.
+        last: number and device time [ns] of the sample that was received last; None: none was.
+        take: id of the take in the hand; empty: there is none.
+        phase: of that take.
+        grasp: where the hand grasped in it, as an index into its samples.
+        object_pose: of the object then; None = where the scene has it.
+    """
+
+    request: RecordingRequest
+    state: RecordingState
+    demonstrations: tuple[str, ...] = ()
+    made: int = 0
+    last: tuple[int, int] | None = None
+    take: str = ""
+    phase: Phase = Phase.REACH
+    grasp: int = 0
+    object_pose: ObjectPose | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SuspendedRecordings:
+    """All recordings that a stopped service left."""
+
+    recordings: tuple[SuspendedRecording, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_sample
 from teachpath.recorder.queries import RecorderQueries
-from teachpath.recorder.recorder import DemonstrationCallbacks, Lookup, Recorder
+from teachpath.recorder.recorder import DemonstrationCallbacks, Recorder
+from teachpath.recorder.recording_setup import Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from teachpath_proto import tracker_pb2
@@ -19,10 +20,16 @@ SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 
 
 
 class Bench:
-    """A recorder on an in-memory bus, and a tracker that speaks to it."""
+    """A recorder on an in-memory bus, and a tracker that speaks to it.
 
-    def __init__(self, store: Store, *, recorded: Callable[..., None] | None = None) -> None:
-        self.bus, self.store = MemoryBus(), store
+    Args:
+        bus: of a recorder that was stopped, whose trackers have stayed; None: a new one.
+    """
+
+    def __init__(
+        self, store: Store, *, recorded: Callable[..., None] | None = None, bus: MemoryBus | None = None
+    ) -> None:
+        self.bus, self.store = bus or MemoryBus(), store
         self.recorded: list[tuple[Demonstration, Trajectory]] = []
         self.changed: list[Demonstration] = []
         self.now = 0.0  # [s]

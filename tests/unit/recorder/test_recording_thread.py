@@ -10,7 +10,7 @@ from teachpath.recorder.presence import Presence
 from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.recording_thread import BATCH_SIZE, FLUSH_INTERVAL, TURNS_IN_A_ROUND, RecordingThread
 from teachpath.recorder.sample_queues import SampleQueues
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.suspendable_session import SuspendableSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene
 from tests.unit.recorder.recorders import KEYS
@@ -45,7 +45,7 @@ class Desk:
 
     def begin(self, tracker: str) -> None:
         setup = RecordingSetup("lift", tracker, Calibration("identity"), Scene("empty"))
-        self.thread.sessions[tracker] = RecordingSession(self.store, SETTINGS, setup, clock=lambda: self.now)
+        self.thread.sessions[tracker] = SuspendableSession(self.store, SETTINGS, setup, clock=lambda: self.now)
         self.queues.open(tracker)
 
     def send(self, tracker: str, count: int, first: int = 1) -> None:

@@ -22,6 +22,7 @@ from teachpath.io.store.object_cache import CACHE, CACHE_SIZE, ObjectCache
 from teachpath.io.store.object_storage import ObjectStorage, is_address
 from teachpath.io.store.salvage import HEADER, TOPIC, RecordingHeader, salvage_columns
 from teachpath.io.store.sample_rows import SampleRows
+from teachpath.io.store.suspensions import PART, SUSPENDED, Suspensions
 from teachpath.io.store.viewer_messages import ViewerMessages, message_batch
 from teachpath.io.wire import encode_sample, message_types
 from teachpath.records import RecordingDigest, Sample, SampleColumns
@@ -108,6 +109,12 @@ class RecordingFile:
         with suppress(OSError):
             self._file.close()
 
+    def suspend(self) -> None:
+        """Stop writing, and leave the file for the service's next start; raises OSError."""
+        self.flush()
+        self._file.close()
+        self._part.rename(self._part.with_name(self._part.name.removesuffix(PART) + SUSPENDED))
+
     def discard(self) -> None:
         """Throw the recording away."""
         self.leave()
@@ -125,16 +132,18 @@ class Recordings:
 
     Attributes:
         objects: the object storage.
+        suspensions: what waits for the service's next start.
     """
 
     def __init__(self, root: Path, opener: Opener = open_new, url: str = "", cache_size: int = CACHE_SIZE) -> None:
         self._root, self._opener = root, opener
         self.objects: ObjectStorage = ObjectStorage(url)
+        self.suspensions: Suspensions = Suspensions(root)
         self._cache = ObjectCache(root.parent / CACHE, cache_size, self.objects)
 
     def begin(self, demonstration: str, header: RecordingHeader) -> RecordingFile:
         """Open the recording of a new demonstration."""
-        return RecordingFile(self.folder(header.task) / f"{demonstration}.mcap.part", header, self._opener)
+        return RecordingFile(self.folder(header.task) / f"{demonstration}{PART}", header, self._opener)
 
     def folder(self, task: str) -> Path:
         """Return the folder of a task's recordings."""
@@ -232,4 +241,4 @@ class Recordings:
 
     def unfinished(self) -> list[Path]:
         """List the `.part` files: takes that are running, or that a crash left."""
-        return sorted(self._root.glob("*/*.mcap.part"))
+        return sorted(self._root.glob(f"*/*{PART}"))

@@ -52,6 +52,15 @@ def salvage_columns(
     stream: BinaryIO, limits: ImportSettings | None = None
 ) -> tuple[RecordingHeader | None, SampleColumns, str]:
     """Read a recording from an open file, as `salvage_stream`."""
+    header, payloads, receive_ns, fault = salvage_messages(stream, limits)
+    columns, refused = _decoded(header.tracker if header else "", payloads, receive_ns)
+    return header, columns, refused or fault
+
+
+def salvage_messages(
+    stream: BinaryIO, limits: ImportSettings | None = None
+) -> tuple[RecordingHeader | None, list[bytes], list[int], str]:
+    """Read a recording from an open file: (header, its samples as they came, when [ns], what ended the reading)."""
     header: RecordingHeader | None = None
     payloads: list[bytes] = []
     receive_ns: list[int] = []
@@ -83,8 +92,7 @@ def salvage_columns(
         fault = "it is cut off"
     except Exception as error:  # damage shows as whatever the reader, its decompressor or the unpacking raises
         fault = str(error) or type(error).__name__
-    columns, refused = _decoded(header.tracker if header else "", payloads, receive_ns)
-    return header, columns, refused or fault
+    return header, payloads, receive_ns, fault
 
 
 def _decoded(tracker: str, payloads: list[bytes], receive_ns: list[int]) -> tuple[SampleColumns, str]:
