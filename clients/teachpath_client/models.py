@@ -992,15 +992,19 @@ class MeasuredCalibration:
 
 @dataclass(frozen=True)
 class MeshHull:
-    """The convex hull of a mesh, as a shape of a scene takes it.
+    """The convex hull or pieces of a mesh, as a shape of a scene takes them.
 
     Attributes:
         file: its name
         vertices: three corners a triangle, counter-clockwise from outside, in its units
+        max_pieces: most pieces that were asked for
+        pieces: number of triangles of each convex piece; none: it is one hull
     """
 
     file: str
     vertices: list[tuple[float, float, float]]
+    max_pieces: int = 1
+    pieces: list[int] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -1573,10 +1577,14 @@ class Shape:
         position: of its centre, of a mesh its origin [m, world].
         color: RGB in 24 bits, 0xRRGGBB.
         orientation: to world from shape, unit quaternion w, x, y, z.
-        file: OBJ or STL file of a mesh, beside the settings.
-        vertices: of the mesh's convex hull, which takes its place: three a triangle, in the file's units.
+        file: OBJ, STL, PLY or GLB file of a mesh, beside the settings.
+        vertices: of the mesh's convex hull or pieces, which take its place: three a triangle, in the file's
+            units.
         mass: of the carried object [kg]; None: that of its volume at 300 kg/m^3, as a light wooden block has.
             Obstacles and zones have none.
+        max_pieces: most convex pieces that a mesh is cut into when its file is read; 1: its hull.
+        pieces: number of triangles of each convex piece of a mesh, in the order of `vertices`; empty: it is one
+            hull.
     """
 
     name: str
@@ -1588,6 +1596,8 @@ class Shape:
     file: str = ""
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
     mass: float | None = None
+    max_pieces: int = 1
+    pieces: list[int] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

@@ -68,14 +68,15 @@ class TaskResources(Rest):
         """Remove a scene that no task is done in; its versions stay."""
         return self._ask(SceneVersion, "DELETE", f"/scenes/{name}")
 
-    def read_mesh(self, content: bytes, name: str) -> MeshHull:
-        """Return the convex hull of a mesh file (OBJ, STL), as a shape of a scene takes it.
+    def read_mesh(self, content: bytes, name: str, max_pieces: int = 1) -> MeshHull:
+        """Return the convex hull of a mesh file (OBJ, STL, PLY, GLB), or its pieces, as a shape of a scene takes them.
 
         Args:
             content: of the file.
             name: of the file; its end says what it is.
+            max_pieces: most convex pieces that it is cut into; 1: its hull.
         """
-        return self._ask(MeshHull, "POST", "/meshes", content=content, name=name)
+        return self._ask(MeshHull, "POST", "/meshes", content=content, name=name, max_pieces=max_pieces)
 
     def get_object(self, scene: str) -> ObjectPose:
         """Return where the object of a scene lies."""

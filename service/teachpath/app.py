@@ -123,7 +123,14 @@ class Station:
         self._state_poller.stop()
         self.access.stop()
         self.processes[0].request_stop()
-        first: tuple[Stoppable, ...] = (self._queries, self.recorder, self.reader, self.guidance, self.jobs)
+        first: tuple[Stoppable, ...] = (
+            self._queries,
+            self.recorder,
+            self.reader,
+            self.mesh_reader,
+            self.guidance,
+            self.jobs,
+        )
         then: tuple[Stoppable, ...] = (self.assessor, self.exporter, self.certificate_status, self.objects)
         for part in (*first, *then, *self.processes, self.executions, self.joints, self.preview):
             part.stop()  # executions after the executor, whose last status is the end of what was under way
@@ -140,6 +147,7 @@ class Station:
         store, tokens, people = self.store, self.store.access_tokens, self.store.people
         self.access: Access = Access(settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider)
         self.reader: LimitedProcess = LimitedProcess(settings.jobs)
+        self.mesh_reader: LimitedProcess = LimitedProcess(settings.jobs, "reading the mesh", part="mesh reader")
         self.scenes: Scenes = Scenes(self.store.scenes, settings.scenes)
         scene, call, note = self.scenes.get, self.reader.call, self.audit.note_journal
         self.calibrations: Calibrations = Calibrations(store, settings.recording, settings.calibrations, scene, call)
@@ -287,6 +295,7 @@ class Station:
             scenes=self.scenes,
             objects=self.objects,
             reader=self.reader,
+            mesh_reader=self.mesh_reader,
             health=self.health,
             transfers=self.transfers,
             exporter=self.exporter,

@@ -22,7 +22,7 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.settings import TeleoperationSettings
 from teachpath.io.bus_settings import BusSettings
 from teachpath.io.import_settings import ImportSettings
-from teachpath.io.meshes import read_hull
+from teachpath.io.meshes import read_mesh
 from teachpath.io.store.object_storage import check_url
 from teachpath.io.store.settings import StoreSettings
 from teachpath.jobs.settings import JobSettings, check_executor
@@ -156,7 +156,10 @@ def _with_meshes(settings: Settings, folder: Path) -> Settings:
     """Read the files of meshes; settings that a process hands to another have their vertices already."""
 
     def read(shape: Shape) -> Shape:
-        return replace(shape, vertices=read_hull(folder / shape.file)) if shape.file and not shape.vertices else shape
+        if not shape.file or shape.vertices:
+            return shape
+        mesh = read_mesh(folder / shape.file, max_pieces=shape.max_pieces)
+        return replace(shape, vertices=mesh.vertices, pieces=mesh.pieces)
 
     scenes = tuple(
         replace(

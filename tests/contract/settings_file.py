@@ -27,13 +27,14 @@ MORE = {
     "calibrations": "# rotation: unit quaternion w, x, y, z; offset [m]; scale 0.0254 is for a device in inches",
     "scenes": """\
 # Positions are of centres [m], sizes of a box x, y, z, of a cylinder radius, height, of a sphere its radius; a shape
-# is turned by its `orientation` (quaternion w, x, y, z). A `mesh` has a `file` beside this one (.obj, .stl), and as
-# size the factor from its units to metres; its convex hull takes its place. The object may have a `mass`
-# [kg]; left out, it is that of its volume at 300 kg/m^3.
+# is turned by its `orientation` (quaternion w, x, y, z). A `mesh` has a `file` beside this one (.obj, .stl, with
+# teachpath[meshes] .ply and .glb, too), and as size the factor from its units to metres. Its convex hull takes its
+# place, or up to `max_pieces` convex pieces, which leave the inside of a bin free. The object may have a `mass` [kg];
+# left out, it is that of its volume at 300 kg/m^3.
 # `floor`: its height. Arm, gripper and carried object stay above it, inside every box of [[scenes.keep_in]] and out of
 # every shape of [[scenes.keep_out]]""",
 }
-RARE = ("orientation", "file", "vertices", "mass")  # of a shape, not shown
+RARE = ("orientation", "file", "vertices", "mass", "max_pieces", "pieces")  # of a shape, not shown
 # A setting without a default shows one that it could have.
 EXAMPLES = {
     "motion.arm": "light",

@@ -63,6 +63,8 @@ DOORS = {
     "cattrs": ["io/documents.py"],
     "sqlalchemy": ["io/store"],
     "alembic": ["io/store"],
+    "coacd": ["io/mesh_pieces.py"],
+    "trimesh": ["io/mesh_pieces.py"],
     "obstore": ["io/store/object_storage.py"],
     "mcap": ["io/store", "io/programs/rosbag.py"],
     "mcap_protobuf": ["io/store"],

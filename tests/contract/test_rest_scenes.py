@@ -112,11 +112,15 @@ def test_a_mesh_file_comes_back_as_its_hull_and_nothing_of_it_is_kept(desk: Desk
     hull = desk.post("/meshes", json=None, content=content, params={"name": "cube.obj"}).json()
     assert (hull["file"], len(hull["vertices"])) == ("cube.obj", 36)
     assert {tuple(corner) for corner in hull["vertices"]} == {(round(x, 5), y, z) for x, y, z in corners[:-1]}
-    assert desk.put(f"/scenes/{name}", {"obstacles": [BOX | {"kind": "mesh", "size": [0.001]} | hull]}).is_success
+    mesh = BOX | {"kind": "mesh", "size": [0.001]} | hull
+    assert desk.put(f"/scenes/{name}", {"obstacles": [mesh]}).is_success
     saved = desk.get(f"/scenes/{name}").json()["scene"]["obstacles"][0]
     assert {tuple(corner) for corner in saved["vertices"]} == {tuple(corner) for corner in hull["vertices"]}
+    twice = mesh | {"vertices": saved["vertices"] * 2, "max_pieces": 2, "pieces": [12, 12]}
+    assert desk.put(f"/scenes/{name}", {"obstacles": [twice]}).is_success
+    assert desk.get(f"/scenes/{name}").json()["scene"]["obstacles"][0].items() >= twice.items()
     for file, sent, sentence in (
-        ("cube.step", content, "mesh cube.step ends in '.step'; known: .obj, .stl"),
+        ("cube.step", content, "mesh cube.step ends in '.step'; known: .glb, .obj, .ply, .stl"),
         ("flat.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n", "mesh flat.obj is flat"),
         ("torn.stl", b"short", "mesh torn.stl is torn"),
         ("empty.stl", b"", "empty.stl: the file is empty"),

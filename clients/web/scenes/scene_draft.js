@@ -157,6 +157,8 @@ export function newShape(scene, part, kind) {
     file: "",
     vertices: [],
     mass: null,
+    max_pieces: 1,
+    pieces: [],
   };
 }
 
@@ -167,7 +169,7 @@ export function newShape(scene, part, kind) {
  * @param {MeshHull} mesh
  * @returns {Shape}
  */
-export function newMesh(scene, part, { file, vertices }) {
+export function newMesh(scene, part, { file, vertices, max_pieces, pieces }) {
   const [low, high] = extremes(vertices);
   const unit = Math.max(...high.map((value, k) => value - low[k])) > LARGEST_IN_METRES ? 0.001 : 1;
   const [x, y, ground] = restingPlace(scene);
@@ -182,6 +184,8 @@ export function newMesh(scene, part, { file, vertices }) {
     file,
     vertices,
     mass: null,
+    max_pieces,
+    pieces,
   };
 }
 

@@ -24,12 +24,15 @@ const TITLES = {
   keep_out: "Zones that the arm stays out of",
 };
 
-/** What can be added: its words, the part that it belongs to, its kind. @type {[string, Part, "box" | "cylinder" | "sphere" | "mesh"][]} */
+const MAX_PIECES = 16; // of a mesh in convex pieces
+
+/** What can be added: its words, the part that it belongs to, its kind, most pieces. @type {[string, Part, "box" | "cylinder" | "sphere" | "mesh", number?][]} */
 const ADDITIONS = [
   ["a box", "obstacles", "box"],
   ["a cylinder", "obstacles", "cylinder"],
   ["a sphere", "obstacles", "sphere"],
   ["a mesh from a file", "obstacles", "mesh"],
+  ["a hollow mesh, in pieces, from a file", "obstacles", "mesh", MAX_PIECES],
   ["a box to carry", "carried", "box"],
   ["a cylinder to carry", "carried", "cylinder"],
   ["a mesh to carry, from a file", "carried", "mesh"],
@@ -56,7 +59,12 @@ export class ShapeList {
     this.addButton = element("button", { type: "button", id: "shape-add" }, "Add");
     this.copyButton = element("button", { type: "button", id: "shape-copy" }, "Duplicate");
     this.removeButton = element("button", { type: "button", id: "shape-remove" }, "Remove");
-    this.file = element("input", { type: "file", hidden: "", accept: ".stl,.obj", "aria-label": "Mesh to add" });
+    this.file = element("input", {
+      type: "file",
+      hidden: "",
+      accept: ".stl,.obj,.ply,.glb",
+      "aria-label": "Mesh to add",
+    });
     place.append(
       this.file,
       this.list,
@@ -92,12 +100,12 @@ export class ShapeList {
     this.editor.change(made.scene, `adding ${text}`, made.place);
   }
 
-  /** @param {File} file whose convex hull the service reads */
+  /** @param {File} file whose convex hull or pieces the service reads */
   async #addMesh(file) {
-    const [, part] = ADDITIONS[Number(this.kinds.value)];
+    const [, part, , pieces = 1] = ADDITIONS[Number(this.kinds.value)];
     const name = this.editor.scene()?.name;
     /** @type {MeshHull} */
-    const mesh = await upload(`meshes?name=${encodeURIComponent(file.name)}`, file);
+    const mesh = await upload(`meshes?name=${encodeURIComponent(file.name)}&max_pieces=${pieces}`, file);
     const scene = this.editor.scene();
     if (!scene || scene.name !== name) return; // another one is looked at meanwhile
     const shape = newMesh(scene, part, mesh);
@@ -131,7 +139,8 @@ export class ShapeList {
 function meshSentence(mesh) {
   const sizes = meshExtent(mesh).map((metres) => Number((1000 * metres).toPrecision(3)));
   const unit = mesh.size[0] === 1 ? "metres" : "millimetres";
-  return `${mesh.file} is ${sizes.join(" × ")} mm, as its convex hull, when its numbers are ${unit}; "metres a unit" says otherwise.`;
+  const place = mesh.pieces?.length ? `in ${mesh.pieces.length} convex pieces` : "as its convex hull";
+  return `${mesh.file} is ${sizes.join(" × ")} mm, ${place}, when its numbers are ${unit}; "metres a unit" says otherwise.`;
 }
 
 /** @param {Place} place */

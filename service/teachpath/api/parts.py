@@ -95,6 +95,7 @@ class Parts:
     scenes: Scenes
     objects: ObjectPoses
     reader: LimitedProcess
+    mesh_reader: LimitedProcess
     health: Callable[[], Health]
     transfers: TransferFolders
     exporter: Exporter

@@ -16,6 +16,7 @@ from teachpath.api.strict_requests import Body
 from teachpath.api.versions import LINE_PATTERN
 from teachpath.editing import MAX_COORDINATE
 from teachpath.errors import UnusableInput
+from teachpath.io.meshes import MAX_PIECES
 from teachpath.motion.collision.scene_checks import MAX_MASS, MIN_MASS
 from teachpath.records import SavedScene, Scene, SceneVersion, Shape
 from teachpath.records.poses import unit_quaternion
@@ -43,7 +44,18 @@ class ShapeBody(Body):
     orientation: Quaternion = Field((1.0, 0.0, 0.0, 0.0), description="to world from shape, quaternion w, x, y, z")
     file: str = Field("", max_length=255, description="from which a mesh was read; only a name")
     vertices: list[Point] = Field(
-        [], max_length=MAX_VERTICES, description="of a mesh, in its own units; their convex hull takes its place"
+        [],
+        max_length=MAX_VERTICES,
+        description="of a mesh, in its own units; their convex hull, or that of each piece, takes its place",
+    )
+    max_pieces: int = Field(
+        1, ge=1, le=MAX_PIECES, description="most convex pieces that the mesh was cut into when its file was read"
+    )
+    pieces: list[Annotated[int, Field(ge=4)]] = Field(
+        [],
+        max_length=MAX_PIECES,
+        description="of an obstacle's or zone's mesh: number of triangles of each convex piece, in the order of "
+        "`vertices`, three a triangle; none: it is one hull",
     )
     mass: float | None = Field(
         None,
@@ -55,8 +67,14 @@ class ShapeBody(Body):
     def shape(self, place: str) -> Shape:
         """Return the shape; raises UnusableInput."""
         orientation = unit_quaternion(self.orientation, f"{place}.orientation")
-        given = self.model_dump(exclude={"orientation", "size", "vertices"})
-        return Shape(**given, size=tuple(self.size), orientation=orientation, vertices=tuple(self.vertices))
+        given = self.model_dump(exclude={"orientation", "size", "vertices", "pieces"})
+        return Shape(
+            **given,
+            size=tuple(self.size),
+            orientation=orientation,
+            vertices=tuple(self.vertices),
+            pieces=tuple(self.pieces),
+        )
 
 
 class SceneBody(Body):

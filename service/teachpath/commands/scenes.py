@@ -33,7 +33,7 @@ def add(
     url: Url = "",
     json_: Json = False,
 ) -> None:
-    """Make the scenes of a file, or change those of these names; meshes (OBJ, STL) are read beside the file."""
+    """Make the scenes of a file, or change those of these names; meshes are read beside the file."""
     read = _scenes(file)
     if name and len(read) > 1:
         raise UnusableInput(f"{file} has {len(read)} scenes; name is for a file with one")
@@ -126,10 +126,17 @@ def _scenes(file: Path) -> list[dict[str, Any]]:
             raise UnusableInput(f"scene {number} of {file} has no name; write one")
         for shape in _shapes(scene):
             if shape.get("kind") == "mesh" and isinstance(shape.get("file"), str) and not shape.get("vertices"):
-                from teachpath.io.meshes import read_hull  # with the libraries of geometry
-
-                shape["vertices"] = read_hull(file.parent / shape["file"])
+                _read_mesh(shape, file.parent)
     return scenes
+
+
+def _read_mesh(shape: dict[str, Any], folder: Path) -> None:
+    from teachpath.io.meshes import read_mesh  # with the libraries of geometry
+
+    max_pieces = shape.get("max_pieces", 1)
+    if not isinstance(max_pieces, int):
+        raise UnusableInput(f"max_pieces of {shape.get('name')} is {max_pieces!r}; write a whole number")
+    shape["vertices"], shape["pieces"] = read_mesh(folder / shape["file"], max_pieces=max_pieces)
 
 
 def _document(file: Path) -> Any:

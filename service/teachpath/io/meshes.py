@@ -1,41 +1,72 @@
-"""Meshes from OBJ and STL files, as their convex hull."""
+"""Meshes from files, as their convex hull or as convex pieces."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from teachpath.errors import UnusableInput
+from teachpath.io import mesh_pieces
 from teachpath.records import Vector
 
 LARGEST: Final = 50_000_000  # bytes
 HEADER: Final = 84  # bytes before the triangles of a binary STL: a comment and their number
+KNOWN: Final = tuple(sorted((".obj", ".stl", *mesh_pieces.SUFFIXES)))
+MAX_PIECES: Final = 32
 TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def read_hull(file: Path, name: str = "") -> tuple[Vector, ...]:
-    """Return the convex hull of a mesh in the file's units: three corners a triangle, counter-clockwise from outside.
+class Mesh(NamedTuple):
+    """What takes a mesh's place: three corners a triangle, counter-clockwise from outside, in the file's units.
+
+    Attributes:
+        vertices: of its convex hull, or of its convex pieces, one after the other.
+        pieces: number of triangles of each; empty: it is one hull.
+    """
+
+    vertices: tuple[Vector, ...]
+    pieces: tuple[int, ...] = ()
+
+
+def read_mesh(file: Path, name: str = "", max_pieces: int = 1) -> Mesh:
+    """Read a mesh's convex hull, or the convex pieces that it is cut into.
 
     Args:
         file: to read.
         name: that the mesh goes by, whose end says what it is; that of the file when empty.
+        max_pieces: most pieces, to `MAX_PIECES`; 1: its hull.
 
     Raises:
-        UnusableInput: the file is missing, too large, neither OBJ nor STL, torn, or flat.
+        UnusableInput: the file is missing, too large, of no known kind, torn, or flat; a library is missing; there
+            cannot be so many pieces.
     """
     name = name or str(file)
+    if not 1 <= max_pieces <= MAX_PIECES:
+        raise UnusableInput(f"mesh {name} in {max_pieces} pieces; 1 to {MAX_PIECES} are possible")
     try:
         if file.stat().st_size > LARGEST:
             raise UnusableInput(f"mesh {name} has {file.stat().st_size} bytes, limit {LARGEST}; simplify it")
         content = file.read_bytes()
     except OSError as error:
         raise UnusableInput(f"cannot read the mesh {name}: {error.strerror}") from None
-    return convex_hull(_corners(content, name), name)
+    if max_pieces == 1:
+        return Mesh(convex_hull(_corners(content, name), name))
+    _suffix(name)
+    return joined(convex_hull(piece, name) for piece in mesh_pieces.convex_pieces(content, name, max_pieces))
+
+
+def joined(hulls: Iterable[tuple[Vector, ...]]) -> Mesh:
+    """Return hulls as the pieces of one mesh; one alone is no piece."""
+    found = list(hulls)
+    pieces = tuple(len(hull) // 3 for hull in found)
+    return Mesh(tuple(chain.from_iterable(found)), pieces if len(pieces) > 1 else ())
 
 
 def convex_hull(corners: ArrayLike, name: str) -> tuple[Vector, ...]:
@@ -65,19 +96,26 @@ def convex_hull(corners: ArrayLike, name: str) -> tuple[Vector, ...]:
 
 
 def _corners(content: bytes, name: str) -> NDArray[np.float64]:
-    kind = Path(name).suffix.lower()
+    kind = _suffix(name)
+    if kind in mesh_pieces.SUFFIXES:
+        return mesh_pieces.read_corners(content, name)
     if kind == ".obj":
         found = re.findall(rb"^v\s+(\S+)\s+(\S+)\s+(\S+)", content, re.MULTILINE)
     elif kind == ".stl" and content[:5] == b"solid" and b"facet" in content[:1000]:
         found = re.findall(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)", content, re.MULTILINE)
-    elif kind == ".stl":
-        return _binary_stl(content, name)
     else:
-        raise UnusableInput(f"mesh {name} ends in {kind!r}; known: .obj, .stl")
+        return _binary_stl(content, name)
     try:
         return np.array(found, dtype=np.float64).reshape(-1, 3)
     except ValueError:
         raise UnusableInput(f"mesh {name} has a corner that is no number") from None
+
+
+def _suffix(name: str) -> str:
+    kind = Path(name).suffix.lower()
+    if kind not in KNOWN:
+        raise UnusableInput(f"mesh {name} ends in {kind!r}; known: {', '.join(KNOWN)}")
+    return kind
 
 
 def _binary_stl(content: bytes, name: str) -> NDArray[np.float64]:

@@ -20,11 +20,13 @@ class LimitedProcess:
 
     Args:
         settings: the limits are those of files.
+        task: what it does, for its refusals.
+        part: its name in lists of processes.
     """
 
-    def __init__(self, settings: JobSettings) -> None:
-        self._settings = settings
-        self._pool = KillablePool(worker.init_limited, settings.max_file_memory, part="reader")
+    def __init__(self, settings: JobSettings, task: str = "reading the recording", *, part: str = "reader") -> None:
+        self._settings, self._task = settings, task
+        self._pool = KillablePool(worker.init_limited, settings.max_file_memory, part=part)
 
     def call(self, function: Callable[..., T], *arguments: Any) -> T:
         """Return what a function returns; blocks, so call it on a thread.
@@ -40,17 +42,17 @@ class LimitedProcess:
         except TimeoutError:
             self._pool.kill()
             raise OverLimit(
-                f"reading the recording takes over {duration:g} s, the limit (jobs.max_file_duration); trim it, or "
+                f"{self._task} takes over {duration:g} s, the limit (jobs.max_file_duration); make it smaller, or "
                 "raise the setting"
             ) from None
         except MemoryError:
             self._pool.kill()
             raise OverLimit(
-                f"reading the recording needs over {memory} bytes of memory, the limit (jobs.max_file_memory); raise it"
+                f"{self._task} needs over {memory} bytes of memory, the limit (jobs.max_file_memory); raise it"
             ) from None
         except (BrokenProcessPool, CancelledError):
             self._pool.kill()
-            raise Unreachable("the process that reads recordings died or was ended; try again") from None
+            raise Unreachable(f"{self._task}: its process died or was ended; try again") from None
         return result
 
     def stop(self) -> None:

@@ -24,10 +24,12 @@ class Shape:
         position: of its centre, of a mesh its origin [m, world].
         color: RGB in 24 bits, 0xRRGGBB.
         orientation: to world from shape, unit quaternion w, x, y, z.
-        file: OBJ or STL file of a mesh, beside the settings.
-        vertices: of the mesh's convex hull, which takes its place: three a triangle, in the file's units.
+        file: OBJ, STL, PLY or GLB file of a mesh, beside the settings.
+        vertices: of the mesh's convex hull or pieces, which take its place: three a triangle, in the file's units.
         mass: of the carried object [kg]; None: that of its volume at 300 kg/m^3, as a light wooden block has. Obstacles
             and zones have none.
+        max_pieces: most convex pieces that a mesh is cut into when its file is read; 1: its hull.
+        pieces: number of triangles of each convex piece of a mesh, in the order of `vertices`; empty: it is one hull.
     """
 
     name: str
@@ -40,6 +42,8 @@ class Shape:
     vertices: tuple[Vector, ...] = ()
     # Not in the text by which arms are hashed: those that are kept hold, and an arm's links have masses of their own.
     mass: float | None = field(default=None, repr=False, metadata=LATER)
+    max_pieces: int = field(default=1, repr=False, metadata=LATER)
+    pieces: tuple[int, ...] = field(default=(), repr=False, metadata=LATER)
 
 
 @dataclass(frozen=True, slots=True)

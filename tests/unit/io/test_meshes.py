@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from teachpath.errors import UnusableInput
-from teachpath.io.meshes import read_hull
+from teachpath.io.meshes import read_mesh
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 2.0) for y in (0.0, 3.0) for z in (0.0, 4.0)])
 TRIANGLES = [[0, 1, 2], [1, 3, 2], [4, 6, 5], [5, 6, 7], [0, 4, 1], [1, 4, 5], [2, 3, 6], [3, 7, 6]]
@@ -35,7 +35,7 @@ def binary_stl() -> bytes:
 @pytest.mark.parametrize(("name", "content"), [("a.obj", obj()), ("b.stl", text_stl()), ("c.STL", binary_stl())])
 def test_a_mesh_is_read_as_its_hull(tmp_path: Path, name: str, content: bytes) -> None:
     (tmp_path / name).write_bytes(content)
-    corners = np.array(read_hull(tmp_path / name))
+    corners = np.array(read_mesh(tmp_path / name).vertices)
     assert {tuple(corner) for corner in corners} == {tuple(corner) for corner in CORNERS}
     triangles = corners.reshape(-1, 3, 3)
     outward = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -47,7 +47,7 @@ def test_a_mesh_is_read_as_its_hull(tmp_path: Path, name: str, content: bytes) -
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
-        ("a.step", b"", "known: .obj, .stl"),
+        ("a.step", b"", "known: .glb, .obj, .ply, .stl"),
         ("a.obj", b"", "has 0 corners"),
         ("a.obj", b"v 1 2 nan\n" * 5, "not finite"),
         ("a.obj", b"v 1 2 three\n" * 5, "no number"),
@@ -59,6 +59,6 @@ def test_a_mesh_is_read_as_its_hull(tmp_path: Path, name: str, content: bytes) -
 def test_what_is_no_mesh_is_refused_with_its_name(tmp_path: Path, name: str, content: bytes, sentence: str) -> None:
     (tmp_path / name).write_bytes(content)
     with pytest.raises(UnusableInput, match=sentence):
-        read_hull(tmp_path / name)
+        read_mesh(tmp_path / name)
     with pytest.raises(UnusableInput, match="No such file"):
-        read_hull(tmp_path / "missing.stl")
+        read_mesh(tmp_path / "missing.stl")

@@ -157,6 +157,10 @@ def test_a_mesh_becomes_its_hull_once(scenes: Scenes) -> None:
     (case,) = prepared.obstacles
     assert set(case.vertices) == set(CORNERS)
     assert prepared_scene(prepared, ARM) == prepared
+    pieces = replace(case, vertices=case.vertices * 2, pieces=(12, 12))
+    assert prepared_scene(Scene("s", (pieces,)), ARM).obstacles == (pieces,)
+    with pytest.raises(UnusableInput, match="is carried and has 2 pieces"):
+        prepared_scene(Scene("s", (), pieces), ARM)
     turns = [2.0 * math.pi * k / (MAX_TRIANGLES // 4 + 2) for k in range(MAX_TRIANGLES // 4 + 2)]
     drum = tuple((math.cos(turn), math.sin(turn), z) for turn in turns for z in (0.0, 1.0))
     with pytest.raises(UnusableInput, match="simplify it"):
@@ -173,6 +177,7 @@ def test_a_mesh_becomes_its_hull_once(scenes: Scenes) -> None:
         (replace(BALL, vertices=((0.0, 0.0, 0.0),)), "a mesh, and only a mesh, has a file"),
         (replace(BALL, mass=0.2), "ball in scene s has a mass; only the carried object has one"),
         (replace(BALL, kind="mesh"), "a mesh, and only a mesh, has a file"),
+        (replace(BALL, kind="mesh", vertices=CORNERS, pieces=(3,)), "ball in scene s has pieces of 3 triangles and 8"),
         (replace(BALL, kind="mesh", vertices=((0.0, 0.0, 0.0),) * 3), "mesh ball has 3 corners; a body needs 4"),
         (replace(BALL, kind="mesh", vertices=((0.0, 0.0, 0.0),) * 5), "mesh ball is flat"),
         (

@@ -8,6 +8,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from teachpath.motion.arm.convex_pieces import convex_shapes
 from teachpath.motion.arm.geometry import LinkSolid, collision_solids, gripper_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.mjcf_shapes import color_text, mesh_asset, numbers, shape_attributes
@@ -32,8 +33,8 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
 
     Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
     joints are `joint1` to `joint6`, torque motors `motor1` to `motor6` [N m]. A geom of the arm has the name of its
-    solid, an obstacle's geom is `obstacle:<name>`, a keep-out zone's `zone:<name>`, and the carried object's body is
-    `carried`.
+    solid, an obstacle's geom is `obstacle:<name>`, a keep-out zone's `zone:<name>`, with `/<number>` where it has
+    several convex pieces, and the carried object's body is `carried`.
 
     Args:
         scene: floor, obstacles, keep-out zones and carried object, in the world.
@@ -55,8 +56,8 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
             "<worldbody>",
             *(_solids_of(0, arm) if arm.model is None else []),
             f'<geom name="floor" type="plane" size="0 0 1" pos="0 0 {float(scene.floor)!r}" {_OBSTACLE_CONTACTS}/>',
-            *[_fixed(f"obstacle:{shape.name}", shape, _OBSTACLE_CONTACTS) for shape in scene.obstacles],
-            *[_fixed(f"zone:{shape.name}", shape, _ZONE_CONTACTS) for shape in scene.keep_out],
+            *[_fixed(f"obstacle:{shape.name}", shape, _OBSTACLE_CONTACTS) for shape in convex_shapes(scene.obstacles)],
+            *[_fixed(f"zone:{shape.name}", shape, _ZONE_CONTACTS) for shape in convex_shapes(scene.keep_out)],
             *_arm(arm),
             *([_carried(scene.carried)] if scene.carried else []),
             "</worldbody>",
@@ -167,8 +168,8 @@ def _mesh(solid: LinkSolid) -> str:
 
 def _bodies(scene: Scene) -> list[tuple[str, Shape]]:
     carried = [(CARRIED_BODY, scene.carried)] if scene.carried else []
-    zones = [(f"zone:{shape.name}", shape) for shape in scene.keep_out]
-    return [(f"obstacle:{shape.name}", shape) for shape in scene.obstacles] + zones + carried
+    zones = [(f"zone:{shape.name}", shape) for shape in convex_shapes(scene.keep_out)]
+    return [(f"obstacle:{shape.name}", shape) for shape in convex_shapes(scene.obstacles)] + zones + carried
 
 
 def _fixed(name: str, shape: Shape, contacts: str) -> str:

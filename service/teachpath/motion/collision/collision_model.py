@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from teachpath.errors import UnusableInput
 from teachpath.lengths import describe_lengths
+from teachpath.motion.arm.convex_pieces import convex_shapes, whole_name
 from teachpath.motion.arm.geometry import collision_solids
 from teachpath.motion.arm.kinematics import link_frames, tool_pose
 from teachpath.motion.arm.mjcf import CARRIED_BODY, write_mjcf
@@ -89,11 +90,13 @@ class CollisionModel:
         self._self_pairs = checked_solid_pairs(self._solids, arm)
         self._names = {geom: part.name for geom, part in self._solids.items()}
         self._obstacles = []
-        for shape in scene.obstacles:
+        for shape in convex_shapes(scene.obstacles):
             self._obstacles.append(self._id(f"obstacle:{shape.name}"))
-            self._names[self._obstacles[-1]] = shape.name
-        self._zones = [self._id(f"zone:{shape.name}") for shape in scene.keep_out]
-        self._names |= {self._id(f"zone:{shape.name}"): f"the keep-out zone {shape.name}" for shape in scene.keep_out}
+            self._names[self._obstacles[-1]] = whole_name(shape.name)
+        self._zones = []
+        for shape in convex_shapes(scene.keep_out):
+            self._zones.append(self._id(f"zone:{shape.name}"))
+            self._names[self._zones[-1]] = f"the keep-out zone {whole_name(shape.name)}"
         self._boundaries = scene_boundaries(scene)
         self._object = self._id(CARRIED_BODY) if scene.carried else -1
         if scene.carried:

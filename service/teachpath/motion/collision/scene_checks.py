@@ -27,6 +27,11 @@ def check_scene(scene: Scene) -> None:
         known.add(shape.name)
         _check_shape(shape, scene.name)
         _check_mass(shape, scene)
+        if shape.pieces and shape is scene.carried:
+            raise UnusableInput(
+                f"{shape.name} in scene {scene.name} is carried and has {len(shape.pieces)} pieces; a carried mesh is "
+                "its hull, leave `max_pieces` out"
+            )
     for zone in scene.keep_in:
         if zone.kind != "box":
             raise UnusableInput(f"keep-in zone {zone.name} in scene {scene.name} is a {zone.kind}; use a box")
@@ -42,6 +47,11 @@ def _check_shape(shape: Shape, scene: str) -> None:
         raise UnusableInput(f"{who} has an orientation of length {norm:g}; a unit quaternion has 1")
     if (shape.kind == "mesh") != bool(shape.vertices):
         raise UnusableInput(f"{who} is a {shape.kind}; a mesh, and only a mesh, has a file")
+    if shape.pieces and (min(shape.pieces) < 4 or 3 * sum(shape.pieces) != len(shape.vertices)):
+        raise UnusableInput(
+            f"{who} has pieces of {', '.join(map(str, shape.pieces))} triangles and {len(shape.vertices)} vertices; a "
+            "piece has 4 triangles at least, a triangle 3 vertices"
+        )
 
 
 def _check_mass(shape: Shape, scene: Scene) -> None:

@@ -1,8 +1,10 @@
+import itertools
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from teachpath.io.meshes import convex_hull
 from teachpath.motion.arm.geometry import FINGER_END, ROD_RADIUS
 from teachpath.motion.arm.kinematics import downward_poses, inverse_kinematics, tool_pose
 from teachpath.motion.arm.model import Arm
@@ -161,3 +163,26 @@ def test_nothing_near_is_far() -> None:
 )
 def test_what_is_too_near_is_said_without_a_negative_number(distance: float, least: float, sentence: str) -> None:
     assert Clearance(distance, "block", "box").describe_violation(distance, least) == sentence
+
+
+def test_the_hand_reaches_between_the_pieces_of_a_mesh_and_not_into_its_hull() -> None:
+    q = over(0.5, 0.1, 0.6)
+    walls = [Shape(f"wall {x}", "box", (0.02, 0.06, 0.2), (x, 0.1, 0.55)) for x in (0.43, 0.57)]
+    hulls = [
+        convex_hull(list(itertools.product((x - 0.01, x + 0.01), (0.07, 0.13), (0.45, 0.65))), "wall")
+        for x in (0.43, 0.57)
+    ]
+    trough = Shape("trough", "mesh", (1.0,), (0.0, 0.0, 0.0), vertices=(*hulls[0], *hulls[1]), pieces=(12, 12))
+
+    def least(scene: Scene) -> Clearance:
+        return CollisionModel(scene, ARM).clearances(q)[0]
+
+    apart = least(Scene("s", tuple(walls)))
+    assert (apart.body.endswith("finger"), apart.distance) == (True, pytest.approx(0.049, abs=1e-6))
+    for scene, name in (
+        (Scene("s", (trough,)), "trough"),
+        (Scene("s", keep_out=(trough,)), "the keep-out zone trough"),
+    ):
+        pieces = least(scene)
+        assert (pieces.other_body, pieces.distance) == (name, pytest.approx(apart.distance, abs=1e-6))
+    assert least(Scene("s", (replace(trough, pieces=()),))).distance < 0.0
