@@ -89,7 +89,7 @@ DOORS = {
     "typer": ["__main__.py", "commands"],
     "rich": ["commands"],
     "prometheus_client": ["api/metrics.py"],
-    "pyarrow": ["io/lerobot.py"],
+    "pyarrow": ["io/lerobot.py", "io/readers/lerobot.py"],
     "rosbags": ["io/readers/bags.py"],
     "pydantic": ["config.py", "api"],
 }

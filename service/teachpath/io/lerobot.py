@@ -28,6 +28,7 @@ from teachpath.records import Array
 VERSION = "v3.0"
 LARGEST_FILE = 100 * 2**20  # bytes of frames, before they are compressed
 CHUNK = 1000  # files in a folder
+STATE, STATE_NAMES = "observation.state", "teachpath.state"  # whose names our own reader finds in the metadata
 FILE = "chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 QUANTILES = (1, 10, 50, 90, 99)  # per cent
 KINDS = {"float32": pa.float32(), "float64": pa.float64(), "int64": pa.int64(), "bool": pa.bool_()}
@@ -107,6 +108,7 @@ def _write_frames(
     try:
         for k in range(count):
             table = pa.table({name: _column(feature, k) for name, feature in features.items()})
+            table = table.replace_schema_metadata({STATE_NAMES: json.dumps(features[STATE].names)})
             if writer is None or written + table.nbytes > largest_file:
                 if writer is not None:
                     writer.close()

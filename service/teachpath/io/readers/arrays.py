@@ -80,7 +80,15 @@ def read_robottasks(content: bytes, name: str, options: ReadOptions, limits: Imp
 
 def read_npz(content: bytes, name: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
     """Read named arrays: t (n,), positions (n, 3), perhaps orientations (n, 4), tracked and grasp (n,)."""
-    arrays = _load_archive(content, name, limits)
+    return named_motion(_load_archive(content, name, limits), name, options)
+
+
+def named_motion(arrays: Mapping[str, NDArray[Any]], name: str, options: ReadOptions) -> FileMotions:
+    """Return the motion that arrays hold, which `NAMES` tells apart.
+
+    Raises:
+        UnusableRecording: there are no positions, or an array is not of their length.
+    """
     found = {role: next((arrays[key] for key in keys if key in arrays), None) for role, keys in NAMES.items()}
     if found["matrices"] is not None and found["positions"] is None:
         found["positions"], found["orientations"] = _poses(found["matrices"], name)

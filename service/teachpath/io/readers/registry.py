@@ -25,12 +25,14 @@ from teachpath.io.readers.contract import (
     unheard,
 )
 from teachpath.io.readers.joints import ToolKinematics, with_tool_motions
+from teachpath.io.readers.lerobot import LEROBOT
+from teachpath.io.readers.matlab import MATLAB
 from teachpath.io.readers.motion_capture import MOTIVE, TRC, VICON
 from teachpath.io.readers.tables import EUROC, TABLE, TUM
 
 GROUP = "teachpath.readers"
 LARGEST_FILE = 64 * 1024 * 1024  # bytes
-HOUSE = (MOTIVE, VICON, TRC, EUROC, TUM, MATRICES, NPZ, NPY, ROBOTTASKS, ROSBAG, TABLE)
+HOUSE = (MOTIVE, VICON, TRC, EUROC, TUM, MATRICES, MATLAB, NPZ, NPY, ROBOTTASKS, ROSBAG, LEROBOT, TABLE)
 
 
 @functools.cache

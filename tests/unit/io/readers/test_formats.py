@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 from scipy.spatial.transform import Rotation
 
 from teachpath.errors import UnusableRecording
@@ -64,6 +65,15 @@ def npz() -> bytes:
     return out.getvalue()
 
 
+ARRAYS = {"t": TIMES, "positions": POSITIONS, "quaternions": WXYZ}
+
+
+def mat(*, compressed: bool = True, **arrays: object) -> bytes:
+    out = io.BytesIO()
+    savemat(out, arrays, do_compression=compressed)
+    return out.getvalue()
+
+
 def npy() -> bytes:
     out = io.BytesIO()
     np.save(out, np.column_stack([TIMES, POSITIONS, WXYZ]))
@@ -93,6 +103,7 @@ FILES = {
     "matrices": ("hand.traj", matrices()),
     "npz": ("hand.npz", npz()),
     "npy": ("hand.npy", npy()),
+    "mat": ("hand.mat", mat(**ARRAYS)),
     "csv": ("hand.csv", text(np.column_stack([TIMES, POSITIONS, XYZW]), "time,px,py,pz,qx,qy,qz,qw")),
 }
 UNTURNED = {"vicon", "trc"}  # markers
@@ -114,6 +125,40 @@ def test_every_format_is_recognized_and_gives_the_same_motion(kind: str) -> None
     else:
         assert track.orientations is not None
         assert np.allclose(np.abs(np.sum(track.orientations * WXYZ, axis=1)), 1.0)
+
+
+POSES = np.moveaxis(np.tile(np.eye(4), (COUNT, 1, 1)), 0, 2)
+POSES[:3, :3, :], POSES[:3, 3, :] = np.moveaxis(TURNS.as_matrix(), 0, 2), POSITIONS.T
+
+
+@pytest.mark.parametrize(
+    "arrays",
+    [
+        {"t": TIMES[:, None], "positions": POSITIONS.T, "quaternions": WXYZ.T, "subject": "anna"},
+        {"time": TIMES, "poses": POSES},
+    ],
+)
+def test_arrays_of_matlab_may_lie_on_their_side(arrays: dict[str, object]) -> None:
+    (track,) = read(mat(**arrays), "hand.mat").tracks
+    assert np.allclose(track.times, TIMES)
+    assert np.allclose(track.positions, POSITIONS)
+    assert track.orientations is not None
+    assert np.allclose(np.abs(np.sum(track.orientations * WXYZ, axis=1)), 1.0)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (mat(trial={"positions": POSITIONS}), r"no array positions \(n, 3\) in it; it holds trial \(struct\)"),
+        (mat(positions="none"), r"it holds positions \(char\)"),
+        (b"MATLAB 7.3 MAT-file, made by hand", r"version 7.3; write it in MATLAB with save\(..., '-v7'\)"),
+        (mat(positions=np.zeros((600_000, 3), np.int8)), "600000 samples, limit 500000"),
+        (mat(positions=np.zeros((20_000_000, 3), np.int8)), "expand to 480000000 bytes, limit 268435456"),
+    ],
+)
+def test_a_mat_file_that_cannot_be_read_is_said(content: bytes, sentence: str) -> None:
+    with pytest.raises(UnusableRecording, match=sentence):
+        read(content, "hand.mat")
 
 
 PLAIN = np.column_stack([TIMES, POSITIONS])
