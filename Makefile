@@ -2,7 +2,8 @@
 #   make demo [SPEED=4] [ARGS=--once]   the main job: tracker -> recorder -> learning -> arm
 #   make test    check and all tests          make bench [ARGS=scale]   measured figures; how costs grow
 #   make check   format, lint, types          make proto   regenerate the messages
-#   make lint-contract   Spectral and Redocly over the description of the REST API, buf over the messages
+#   make lint-contract   Spectral and Redocly over the description of the REST API, buf over the messages, twine over the package
+#   make probe-contract   whatever Schemathesis makes of the description, sent to a station as every role
 #   make generate-clients   clients by three public generators: none has an untyped answer, one teaches a station
 #   make experiments [ARGS=--quick]   the paper's experiments, as a report in reports/
 #   make docs    the documents as a site; the service shows it under /help
@@ -27,11 +28,11 @@ READY   := .venv/.ready
 # Every file is checked against its hash, and nothing is installed that requirements/ does not name.
 PINNED  := --no-deps --require-hashes -r requirements
 
-.PHONY: demo serve test check check-page lint-contract generate-clients bench experiments docs pins sbom proto clean setup programs
+.PHONY: demo serve test check check-page lint-contract probe-contract generate-clients bench experiments docs pins sbom proto clean setup programs
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,11s/^# \{0,1\}//p' Makefile
+	@sed -n '1,12s/^# \{0,1\}//p' Makefile
 
 # An environment with pip in it, from scratch where another interpreter's stands; Debian keeps the module that makes one
 # in a package of its own.
@@ -90,10 +91,23 @@ $(CONTRACT_TOOLS): tools/contract/package-lock.json | $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract ci --silent
 	@touch $@
 
-lint-contract: $(CONTRACT_TOOLS)
+# Tools with libraries of their own: for packages, and one that attacks a station by its description.
+PROBES := .venv/contract/.ready
+$(PROBES): requirements/contract.txt | $(READY)
+	@$(BIN)/python -m venv .venv/contract
+	@.venv/contract/bin/python -m pip install -q --disable-pip-version-check $(PINNED)/contract.txt
+	@touch $@
+
+lint-contract: $(CONTRACT_TOOLS) $(PROBES)
 	@$(BIN)/python -m tests.contract.openapi dist/openapi.json
 	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract run --silent lint
 	@PATH="$(CURDIR)/$(BIN):$$PATH" npm --prefix tools/contract run --silent messages
+	@rm -rf dist/packages && $(BIN)/python -m hatchling build -d dist/packages >/dev/null
+	@.venv/contract/bin/twine --no-color check --strict dist/packages/*
+	@.venv/contract/bin/check-wheel-contents dist/packages/*.whl
+
+probe-contract: $(PROBES)
+	@$(BIN)/python -m tests.contract.probe $(ARGS)
 
 # Clients that others make of the description; the generators have libraries of their own.
 GENERATORS := .venv/generators/.ready
@@ -146,6 +160,7 @@ pins: $(SERVICE)
 	@$(call install,$(PINNED)/uv.txt)
 	$(COMPILE) --group setup -o requirements/uv.txt
 	$(COMPILE) --group generators -o requirements/generators.txt
+	$(COMPILE) --group contract -o requirements/contract.txt
 	$(COMPILE) pyproject.toml --extra service --group build -o requirements/service.txt
 	$(COMPILE) pyproject.toml --extra postgres --extra s3 -c requirements/service.txt -o requirements/site.txt \
 		$(call left_out,service)

@@ -12,20 +12,19 @@ import sys
 
 from teachpath_client import ClientError, Station
 from teachpath_client.events import Event
-from teachpath_client.models import Job
 
 ENDED = ("succeeded", "failed", "cancelled")
 
 
-def line(station: Station, event: Event, job: Job | None) -> str:
-    """Return what an event says, in a line; `job` is the one that it is about."""
+def line(station: Station, event: Event) -> str:
+    """Return what an event says, in a line."""
     if event.topic == "all":
         return f"read everything anew: {len(station.tasks())} tasks ({event.reason})"
-    if job is not None:
-        return f"job {job.id} ({job.kind} of {job.task}): {job.state} {job.fraction:.0%} {job.message}".rstrip()
-    if event.topic == "executions":
-        execution = station.get_execution(event.id)
-        return f"execution {execution.id}: {execution.status.state} {execution.status.reason}".rstrip()
+    if event.status and event.topic == "jobs":
+        what = "job {id} ({kind} of {task}): {state} {fraction:.0%} {message}"
+        return what.format(id=event.id, **event.status).rstrip()
+    if event.status:
+        return "execution {id}: {state} {reason}".format(id=event.id, **event.status).rstrip()
     return f"{event.topic} {event.id}".rstrip()
 
 
@@ -38,9 +37,8 @@ def main() -> None:
     try:
         with Station(options.url) as station, station.events() as events:
             for event in events:
-                job = station.get_job(event.id) if event.topic == "jobs" else None
-                print(line(station, event, job), flush=True)
-                if options.until_job and job is not None and job.state in ENDED:
+                print(line(station, event), flush=True)
+                if options.until_job and event.topic == "jobs" and (event.status or {}).get("state") in ENDED:
                     return
     except KeyboardInterrupt:
         return

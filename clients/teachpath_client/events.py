@@ -26,6 +26,7 @@ class Event:
             executor, trackers, recordings, guidance; `all`: anything may have changed.
         id: of the resource; empty: of the whole topic.
         now: how it stands, where the event says so.
+        status: of a job its task, kind, state, fraction, message and outcome; of an execution plan, state and reason.
         reason: of an event of topic `all`.
     """
 
@@ -34,6 +35,7 @@ class Event:
     id: str
     now: Any = None
     reason: str = ""
+    status: dict[str, Any] | None = None
 
 
 class Events:

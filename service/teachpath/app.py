@@ -37,6 +37,7 @@ from teachpath.jobs.limited_process import LimitedProcess
 from teachpath.live.event_hub import EventHub
 from teachpath.live.preview.asset_paths import has_documents
 from teachpath.live.preview.preview import Preview
+from teachpath.live.row_status import status_of
 from teachpath.live.shown_task import ShownTask
 from teachpath.live.state_poller import Poll, StatePoller
 from teachpath.motion.arm.geometry import visual_solids
@@ -255,8 +256,7 @@ class Station:
         """Say what an operator should know."""
         notes = [note for process in self.processes if (note := process.note())]
         notes += self.recorder.faults() + self.executions.faults() + self.store.health.faults()
-        notes += self.store.spool.faults()
-        notes += self._access.notes(datetime.now(UTC)) if self._access else []
+        notes += self.store.spool.faults() + (self._access.notes(datetime.now(UTC)) if self._access else [])
         notes += self.access.notes() + self.audit.notes() + self.scenes.notes
         notes += self.certificate.notes(datetime.now(UTC)) if self.certificate else []
         if (unfinished := self.store.recordings.unfinished()) and not self.recorder.statuses():
@@ -304,6 +304,6 @@ class Station:
 
     def _on_change(self, table: str, key: str) -> None:
         """Publish a row that has changed, here or by another station; of a scene, show the object anew."""
-        self.event_hub.publish_change(table, key)
+        self.event_hub.publish_change(table, key, status_of(self.store, table, key))
         if table in ("scenes", EVERYTHING):
             self._shown.show_scene()

@@ -9,12 +9,16 @@ from typing import Any
 
 import httpx
 import pytest
+from pydantic import TypeAdapter
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
+from teachpath.api.live_messages import ChangeEvent
 from teachpath.app import Station
 from teachpath.commands.serving import listen
+from teachpath.records import ExecutorStatus
 from teachpath.web.server import web_server
+from teachpath_proto.control import ExecutorState
 from tests.contract.desk import csv
 from tests.contract.stations import station
 from tests.ports import free_port
@@ -79,6 +83,19 @@ def test_every_kind_of_change_is_told_to_all_who_listen(served: Served) -> None:
         run = until(one, "runs")["id"]
         assert until(one, "paths")["id"].startswith(run)
         assert served.call("GET", f"/jobs/{job['id']}").json()["state"] == "succeeded"
+        while (told := until(other, "jobs", job["id"])["status"])["state"] in ("queued", "running"):
+            pass
+        assert (told["task"], told["kind"], told["state"]) == ("told", "learn", "succeeded")
+        assert told["outcome"] == run
+
+
+def test_an_execution_is_told_with_how_it_stands(served: Served) -> None:
+    with served.listen() as socket:
+        status = ExecutorStatus("execution-told", ExecutorState.HELD, "the clutch was let go")
+        served.station.store.put_execution("execution-told", None, status)
+        event = until(socket, "executions", "execution-told")
+    TypeAdapter(ChangeEvent).validate_python(event, extra="forbid")
+    assert event["status"] == {"plan": None, "state": "held", "reason": "the clutch was let go"}
 
 
 def test_a_change_that_was_refused_is_not_told(served: Served) -> None:

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, get_args
 
@@ -15,6 +16,7 @@ from teachpath.api.live_description import live_description
 from teachpath.io.store.tables import Base
 from teachpath.live.event_hub import PRIVATE, EventHub
 from teachpath.live.state_poller import StatePoller
+from teachpath_proto import tracker_pb2
 from tests.contract.desk import Desk, csv
 from tests.waiting import HANG
 
@@ -70,6 +72,13 @@ def test_states_are_as_described(desk: Desk) -> None:
             state.validate_python(event.document["now"], extra="forbid")
     assert {"all", "station"} <= topics
     assert set(desk.station._polls()) == set(live_messages.STATES)
+
+
+def test_a_sample_in_json_has_the_fields_of_the_message() -> None:
+    kinds = {live_messages.SampleFields: tracker_pb2.HandSample, live_messages.SamplePosition: tracker_pb2.Vector3}
+    kinds |= {live_messages.SampleOrientation: tracker_pb2.Quaternion}
+    for kind, message in kinds.items():
+        assert {field.name for field in fields(kind)} == set(message.DESCRIPTOR.fields_by_name)
 
 
 def test_answers_to_a_tracker_are_as_described(port: int) -> None:

@@ -47,5 +47,11 @@ def test_a_wrong_word_in_an_address_is_no_fault_of_the_body(desk: Desk, resource
     refused(desk.send("OPTIONS", API + resource), 404, "there is nothing at OPTIONS")
 
 
+def test_an_address_without_a_method_is_no_address_with_a_wrong_word(desk: Desk) -> None:
+    answer = desk.post("/executions/moon/program?format=csv")
+    refused(answer, 405, "POST /api/v1/executions/moon/program is not possible; allowed here: GET, HEAD")
+    refused(desk.post("/executions/moon/jump?format=csv"), 404, "query.format")
+
+
 def test_a_version_is_a_number(desk: Desk) -> None:
     refused(desk.get("/paths/moon/versions/moon"), 404, "path.number")

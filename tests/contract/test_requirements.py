@@ -9,7 +9,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 FILES = {name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("service", "site", "dev", "uv")}
-GENERATORS = (ROOT / "requirements" / "generators.txt").read_text()  # in an environment of their own
+APART = {  # in environments of their own
+    name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("contract", "generators")
+}
 
 
 def pinned(text: str) -> list[str]:
@@ -28,7 +30,7 @@ def wanted(*lists: list[str]) -> set[str]:
     return {re.sub(r"[-_.]+", "-", name[0]).lower() for name in names if name}
 
 
-@pytest.mark.parametrize("text", [*FILES.values(), GENERATORS], ids=[*FILES, "generators"])
+@pytest.mark.parametrize("text", [*FILES.values(), *APART.values()], ids=[*FILES, *APART])
 def test_every_requirement_is_a_version_with_hashes_and_nothing_else(text: str) -> None:
     lines = text.replace("\\\n", "").splitlines()
     assert lines
@@ -43,7 +45,8 @@ def test_everything_that_is_asked_for_is_pinned() -> None:
     assert wanted(extras["postgres"], extras["s3"]) <= service | site
     assert wanted(extras["dev"], extras["dask"], extras["lerobot"], extras["ros"]) <= service | site | dev
     assert wanted(groups["setup"]) == set(pinned(FILES["uv"]))
-    assert wanted(groups["generators"]) <= set(pinned(GENERATORS))
+    for name, text in APART.items():
+        assert wanted(groups[name]) <= set(pinned(text))
 
 
 def test_a_distribution_is_pinned_in_one_place() -> None:

@@ -1,10 +1,10 @@
 """The events: a WebSocket that sends changes and states, so that a page need not poll.
 
-Each message is one JSON document (`live_messages.py`): `{"sequence", "topic", "id"}` says that a resource has changed;
-with `now` it carries a state (null: the thing has gone). The topic `all` means: read everything anew. It comes first,
-and again when a subscriber has fallen behind. Topics are the names of the resources (tasks, demonstrations, runs,
-paths, plans, jobs, executions), and, with `now`, `station`, `executor` (also who has control), `trackers`,
-`recordings` and `guidance`.
+Each message is one JSON document (`live_messages.py`): `{"sequence", "topic", "id"}` says that a resource has changed,
+of a job or an execution with `status` also how it stands; with `now` it carries a state (null: the thing has gone).
+The topic `all` means: read everything anew. It comes first, and again when a subscriber has fallen behind. Topics are
+the names of the resources (tasks, demonstrations, runs, paths, plans, jobs, executions), and, with `now`, `station`,
+`executor` (also who has control), `trackers`, `recordings` and `guidance`.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from http import HTTPStatus
 from typing import Any, Final
 
@@ -90,7 +91,7 @@ def answer_errors(app: FastAPI) -> None:
         errors = error.errors()
         faults = [_fault(request, e) for e in errors[:MAX_FAULTS]]
         sentence = f"{faults[0].place}: {faults[0].fault}" + (f", and {len(errors) - 1} more" if errors[1:] else "")
-        if any(e["loc"][0] == "path" for e in errors):
+        if not _has_words(request.scope["route"], request.path_params):
             if _allowed(request):
                 return await name_place(request, HTTPException(405))
             return refuse(404, sentence, "NotFound", errors=faults)
@@ -160,9 +161,10 @@ def _allowed(request: Request) -> list[str]:
 def _is_at(route: Any, request: Request) -> bool:
     """Tell whether an address is a route's, with words that it takes: `recording` is no verb of an execution."""
     match, child = route.matches(request.scope)
-    if match is not Match.PARTIAL:
-        return False
-    named = child["path_params"]
+    return match is Match.PARTIAL and _has_words(route, child["path_params"])
+
+
+def _has_words(route: Any, named: Mapping[str, Any]) -> bool:
     fields = route.dependant.path_params if hasattr(route, "dependant") else ()
     return not any(field.validate(named[field.alias], {}, loc=())[1] for field in fields)
 

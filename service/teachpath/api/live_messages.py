@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 from teachpath.api.recording import RecordingReport
+from teachpath.live.row_status import ExecutionStatus, JobStatus
 from teachpath.records import ExecutorStatus
 
 Resource = Literal[
@@ -33,11 +34,13 @@ class ChangeEvent:
         sequence: counts up by one for each change at the station; one that is left out was overtaken.
         topic: what it is one of; most are named as in the REST API.
         id: of what has changed; of a task its name.
+        status: how a job or an execution stands; left out of others, and where it could not be read.
     """
 
     sequence: int
     topic: Resource
     id: str
+    status: JobStatus | ExecutionStatus | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,14 +153,70 @@ class JointMessage:
 
 
 @dataclass(frozen=True, slots=True)
+class SamplePosition:
+    """Where a hand is, in the tracker's frame.
+
+    Attributes:
+        x: along the first axis [m].
+        y: along the second axis [m].
+        z: along the third axis [m].
+    """
+
+    x: float
+    y: float
+    z: float
+
+
+@dataclass(frozen=True, slots=True)
+class SampleOrientation:
+    """How a hand is turned: a unit quaternion to tracker from hand; all zero: not measured.
+
+    Attributes:
+        w: its real part.
+        x: its first imaginary part.
+        y: its second imaginary part.
+        z: its third imaginary part.
+    """
+
+    w: float
+    x: float
+    y: float
+    z: float
+
+
+@dataclass(frozen=True, slots=True)
+class SampleFields:
+    """A `HandSample` (teachpath/v1/tracker.proto) by the names of its fields; a field that is left out is zero.
+
+    Attributes:
+        sequence: one more than that of the sample sent before.
+        device_ns: when it was read, device clock [ns since the Unix epoch]; as text where numbers have less than 64
+            bits.
+        position: of the hand.
+        orientation: of the hand.
+        flexions: of a glove, 0 (open) to 1 (closed); 18, 22 or none.
+        tracked: whether the device saw the hand; else the pose is a guess.
+        buttons: bit 0 grasp (of a hand without a glove), bit 1 pedal, bit 2 clutch of a live arm.
+    """
+
+    sequence: int
+    device_ns: int | str
+    position: SamplePosition
+    tracked: bool
+    orientation: SampleOrientation | None = None
+    flexions: list[float] | None = None
+    buttons: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class SampleMessage:
     """One sample of a hand, where protobuf is not at hand.
 
     Attributes:
-        sample: a `HandSample` by the names of its fields (teachpath/v1/tracker.proto) [m, s, ns].
+        sample: the reading of glove and tracker.
     """
 
-    sample: dict[str, Any]
+    sample: SampleFields
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,10 +95,10 @@ class EventHub:
         with self._lock:
             self._subscribers.discard(subscriber)
 
-    def publish_change(self, topic: str, key: str) -> None:
-        """Publish that a resource has changed; of who signs in, nobody hears."""
+    def publish_change(self, topic: str, key: str, status: Document | None = None) -> None:
+        """Publish that a resource has changed, and how it stands; of who signs in, nobody hears."""
         if topic not in PRIVATE:
-            self._publish((topic, key), {})
+            self._publish((topic, key), {"status": status} if status else {})
 
     def publish_state(self, topic: str, key: str, now: Document | None) -> None:
         """Publish the state `now` of a thing, to later subscribers too; None: it has gone."""
