@@ -1014,7 +1014,7 @@ class MotionPreview:
     Attributes:
         plan: id of the plan.
         times: (n,) [s], from 0.
-        joints: (n, 6) configurations [rad].
+        joints: (n, joints) configurations [rad].
         progress: (n,) share of the learned path's length that is done.
         gripper_closed: (n,) whether the gripper is closed.
         object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.
@@ -1091,14 +1091,14 @@ class Plan:
         path_version: number of the path's version.
         scene: that it was checked against.
         lengths: (n,) arc length of the nodes [m], from 0, strictly increasing.
-        joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters
-            from 0 to 1.
+        joints: (n, joints) configurations at the nodes [rad]; between them a quintic spline runs, on even
+            parameters from 0 to 1.
         squared_rates: (m,) coefficients of the square of the parameter's rate at full speed, a quadratic spline
             on even intervals [1/s^2].
-        limits: (3, 6) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they follow
-            the path, at any override.
-        above_start: (6,) configuration above the start, from where the object is grasped.
-        above_goal: (6,) configuration above the goal, to where the arm retreats.
+        limits: (3, joints) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they
+            follow the path, at any override.
+        above_start: (joints,) configuration above the start, from where the object is grasped.
+        above_goal: (joints,) configuration above the goal, to where the arm retreats.
         duration: of the path at full speed [s].
         certificate: the proof that the arm can follow it.
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
@@ -1324,12 +1324,12 @@ class Robot:
         model: SHA-256 of an arm that was added (hex); empty for a published one.
         links: of a published arm, from the base to the wrist; empty for one that was added.
         joints: from the base to the flange.
-        lower: (6,) limits of the joints [rad].
-        upper: (6,) likewise.
-        speed: (6,) limits [rad/s].
-        acceleration: (6,) limits [rad/s^2].
-        jerk: (6,) limits [rad/s^3].
-        torque: (6,) limits [N m].
+        lower: (joints,) limits of the joints [rad].
+        upper: (joints,) likewise.
+        speed: (joints,) limits [rad/s].
+        acceleration: (joints,) limits [rad/s^2].
+        jerk: (joints,) limits [rad/s^3].
+        torque: (joints,) limits [N m].
         tool: its pose to the flange.
         tool_length: from where the gripper sits to the tool centre point [m]; 0: there is no gripper.
         finger_travel: of each finger [m].
@@ -1787,9 +1787,9 @@ class TimeSeries:
 
     Attributes:
         times: (n,) since the first setpoint [s].
-        positions: (n, 6) of the joints [rad].
-        velocities: (n, 6), each the one of largest magnitude since the time before [rad/s].
-        torques: (n, 6), likewise [N m].
+        positions: (n, joints) of the joints [rad].
+        velocities: (n, joints), each the one of largest magnitude since the time before [rad/s].
+        torques: (n, joints), likewise [N m].
         tool: (n, 3) grasp point [m], world.
         object: (n, 3) carried object [m], world; empty when there is none.
         gripper_closed: (n,).

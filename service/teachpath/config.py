@@ -33,7 +33,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.mounting import check_mounting
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.motion.collision.scene_checks import check_scene
-from teachpath.motion.planning.model_arms import with_home
+from teachpath.motion.planning.model_arms import check_home_size, with_home
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, SerialArm, Shape
@@ -118,6 +118,7 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
     settings = _with_meshes(_checked(given), _folder(file))
     if settings.motion.arm is None:
         check_mounting(settings.arm)
+        check_home_size(settings.motion, settings.arm)
     _check_names("robot", [settings.bus.robot])
     if settings.store.station:
         _check_names("station", [settings.store.station])

@@ -72,7 +72,7 @@ def plan(
         path: a learned path, or a curve of positions [m, world].
         scene: what stands around; None: a table, and nothing on it.
         settings: the defaults when None.
-        arm: the published one that the settings name when None; or one of six joints that `read_arm` read. That has no
+        arm: the published one that the settings name when None; or one that `read_arm` read. That has no
             gripper, and waits in the middle of its joints' ranges unless `settings.home` says otherwise.
 
     Returns:
@@ -89,7 +89,7 @@ def plan(
 def setpoints(
     plan: Plan, rate: float = 250.0, *, settings: MotionSettings | None = None, arm: Arm | SerialArm | None = None
 ) -> tuple[Array, Array]:
-    """Return the times (n,) [s] and the joints (n, 6) [rad] of a plan's motion along its path, at full speed.
+    """Return the times (n,) [s] and the joints (n, joints) [rad] of a plan's motion along its path, at full speed.
 
     The last one is the first at or behind the end, where the arm rests.
 
@@ -110,7 +110,7 @@ def setpoints(
     trajectory = plan_trajectory(plan)
     count = int(np.ceil(trajectory.duration * rate)) + 1
     times = np.arange(count) / rate
-    return times, trajectory(times)[:, :6]
+    return times, trajectory(times)[:, :-1]
 
 
 def _arm(arm: Arm | SerialArm | None, settings: MotionSettings | None) -> Arm | None:

@@ -9,7 +9,7 @@ from teachpath.config import Settings
 from teachpath.errors import NotFound, UnusableSettings
 from teachpath.io.store.arms import Arms
 from teachpath.io.store.store import Store
-from teachpath.motion.planning.model_arms import check_home, check_joints
+from teachpath.motion.planning.model_arms import check_home
 from teachpath.motion.settings import MotionSettings
 
 # Settings that describe the Puma 560 and what it carries; a model has its own.
@@ -20,8 +20,8 @@ def with_stored_arm(settings: Settings, arms: Arms) -> Settings:
     """Return the settings with the newest version of the arm that `motion.arm` names.
 
     Raises:
-        UnusableSettings: there is none of that name, it has seven joints, its home is outside its limits, or the
-            settings describe a tool or payload beside it.
+        UnusableSettings: there is none of that name, its home is outside its limits, or the settings describe a
+            tool or payload beside it.
     """
     name, default = settings.motion.arm, MotionSettings()
     if name is None:
@@ -41,7 +41,6 @@ def with_stored_arm(settings: Settings, arms: Arms) -> Settings:
             f"arm add {name} MODEL"
         ) from None
     found = settings.with_model(model)
-    check_joints(found.arm)
     check_home(found.motion, found.arm)
     return found
 

@@ -67,7 +67,9 @@ def main() -> None:
         "Random paths, planned and judged by an independent checker",
         plans.measure(count=10 if quick else 100),
     )
-    print_report("Arms from models, planned", model_arms.measure(count=10 if quick else 50))
+    for example in model_arms.ASKED:
+        figures = model_arms.measure(example, count=10 if quick else 50)
+        print_report(f"Arms from models, planned: {example}", figures)
     print_report(
         "An executor that oversleeps or dies, setpoints that are lost, at random moments on random paths",
         lateness.measure(paths=2 if quick else 10, moments=2 if quick else 10),

@@ -8,7 +8,8 @@ import numpy as np
 from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import Governor, warm_up
-from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, is_usable
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import Candidate, is_usable
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.limit_margins import NO_MARGINS, limit_uses

@@ -13,7 +13,8 @@ from teachpath.learning.fitting.synthesis import best_fit, mean_path
 from teachpath.learning.resampling import smoothed
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import is_usable
 from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timed_trajectory import time_joint_path

@@ -22,7 +22,7 @@ SHORT_LEASE = 500  # [ms]
 
 def test_a_cut_line_is_not_the_end_of_the_driver() -> None:
     port = free_port()
-    monitors = [JointStateMonitor("puma560", 0.2, time.monotonic_ns) for _ in range(2)]
+    monitors = [JointStateMonitor("puma560", 6, 0.2, time.monotonic_ns) for _ in range(2)]
     service = listen_on_bus(BusSettings(endpoint=f"tcp/127.0.0.1:{port}"))
     driver = open_bus(BusSettings(endpoint=f"tcp/127.0.0.1:{port}"))
     with Proxy(port) as proxy:

@@ -25,7 +25,7 @@ def test_tells_the_whole_story_once_and_leaves_nothing(start: Start) -> None:
 
 
 def test_tells_it_with_an_arm_from_a_model(start: Start) -> None:
-    demo = start("--once", "--speed", "10", "--arm", "six-axis")
+    demo = start("--once", "--speed", "10", "--arm", "seven-axis")
     assert demo.wait() == 0, demo.err
     assert_story(demo.out)
     assert_nothing_left(demo)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from teachpath.config import Settings, load
-from teachpath.errors import UnusableInput, UnusableSettings
+from teachpath.errors import UnusableSettings
 from teachpath.instructions import Instructions, from_instructions, instructions
 from teachpath.io.arm_models.arm_reader import read_arm
 from teachpath.io.store.store import Store
@@ -50,8 +50,8 @@ def test_what_is_no_arm_of_a_station_is_a_sentence(store: Store) -> None:
     with pytest.raises(UnusableSettings, match=r"motion.arm is 'light', an arm that is kept in a data folder"):
         Arm.of_settings(settings().motion)
     store.arms.add(read_arm("seven-axis", name="light"), "seven_axis.xml")
-    with pytest.raises(UnusableInput, match="light has 7 joints"):
-        with_stored_arm(settings(), store.arms)
+    with pytest.raises(UnusableSettings, match=r"motion.home has 6 angles, and the arm light 7 joints"):
+        with_stored_arm(settings(home=(0.0, 0.5, 1.0, 0.0, 0.0, 0.0)), store.arms)
     store.arms.add(read_arm("six-axis", name="light"), "six_axis.urdf")
     with pytest.raises(UnusableSettings, match=r"motion.tool_length is 0.2, and motion.arm is 'light': leave out"):
         with_stored_arm(settings(tool_length=0.2), store.arms)

@@ -15,6 +15,7 @@ import numpy as np
 
 from teachpath_client.driver.check_motion import COUNT, PERIOD, Move
 from teachpath_client.driver.interpolation import Array
+from teachpath_client.driver.messages import JOINT_COUNTS, needed_joints
 from teachpath_client.verdict import Verdict
 from teachpath_proto.motion_pb2 import JointState
 
@@ -102,8 +103,9 @@ class DriverCheck:
         if len(came) < MIN_STATES:
             return f"{len(came)} joint states came in a second; {MIN_STATES} are needed"
         for state in came:
-            if not all(len(v) == 6 and np.isfinite(v).all() for v in (state.position, state.velocity, state.torque)):
-                return f"a joint state has no 6 finite numbers: {state.position}, {state.velocity}, {state.torque}"
+            arrays, count = (state.position, state.velocity, state.torque), len(came[0].position)
+            if count not in JOINT_COUNTS or not all(len(v) == count and np.isfinite(v).all() for v in arrays):
+                return f"a joint state has no {needed_joints(count)} finite numbers: {', '.join(map(str, arrays))}"
         last = came[-1]
         if last.fault or last.protective_stop or not last.enabled:
             return f"enabled {last.enabled}, protective stop {last.protective_stop}, fault {last.fault or 'none'}"

@@ -23,8 +23,8 @@ class Move:
 
     Attributes:
         execution: id of the execution.
-        begin: (6,) where it begins [rad].
-        end: (6,) where it ends [rad].
+        begin: (joints,) where it begins [rad].
+        end: (joints,) where it ends [rad].
         first_cycle: number of its first setpoint.
         gripper_closed: whether the gripper is to be closed.
     """
@@ -37,7 +37,7 @@ class Move:
 
     @property
     def top_speed(self) -> Array:
-        """(6,) largest speeds [rad/s]."""
+        """(joints,) largest speeds [rad/s]."""
         return np.asarray(1.875 * np.abs(self.end - self.begin) / DURATION)
 
     def setpoint(self, index: int, begin_ns: int) -> Setpoint:
@@ -62,20 +62,20 @@ class Move:
         )
 
     def rest_of(self, cycle: int) -> Array:
-        """Return where (6,) the way to rest of setpoint `cycle` ends [rad]."""
+        """Return where (joints,) the way to rest of setpoint `cycle` ends [rad]."""
         time = (cycle - self.first_cycle - STANDSTILL) * PERIOD
         if not 0.0 < time < DURATION:
             return self.begin if time <= 0.0 else self.end
         return np.asarray(self._way_to_rest(time)[-1, 0])
 
     def _way_to_rest(self, time: float) -> Array:
-        """Return states (n, 3, 6) along the same line, on which the rate falls smoothly to zero."""
+        """Return states (n, 3, joints) along the same line, on which the rate falls smoothly to zero."""
         x = np.arange(1, round(BRAKING / PERIOD) + 1) * PERIOD / BRAKING
         ahead = BRAKING * (x - (x**6 - 3 * x**5 + 2.5 * x**4))
         pace, slope = 1 - (10 * x**3 - 15 * x**4 + 6 * x**5), -30 * (x**2 - 2 * x**3 + x**4) / BRAKING
         share, rate, change = np.transpose([_profile(time + each) for each in ahead])
         states = np.stack([share, rate * pace, change * pace**2 + rate * slope], axis=1)
-        return np.asarray(states[:, :, None] * (self.end - self.begin) + [self.begin, np.zeros(6), np.zeros(6)])
+        return np.asarray(states[:, :, None] * (self.end - self.begin) + [self.begin, *np.zeros((2, len(self.begin)))])
 
     def _packed_way_to_rest(self, time: float) -> tuple[bytes, bytes, bytes]:
         places, velocities, accelerations = np.moveaxis(self._way_to_rest(time).astype("<f8"), 1, 0)

@@ -42,14 +42,16 @@ class WayToRest:
         begin, way = _state(setpoint), setpoint.way_to_rest
         if not len(way):
             period = BRAKE_TIME
-            way = np.array([[begin[0] + begin[1] * BRAKE_TIME / 2, np.zeros(6), np.zeros(6)]])
+            way = np.zeros((1, *begin.shape))
+            way[0, 0] = begin[0] + begin[1] * BRAKE_TIME / 2
         self._states, self._period = np.concatenate([begin[None], way]), period
         self.duration: float = len(way) * period
 
     def __call__(self, t: float) -> tuple[Array, Array, Array]:
         """Return position, velocity and acceleration `t` [s] behind the setpoint."""
         if t >= self.duration:
-            return self._states[-1, 0], np.zeros(6), np.zeros(6)
+            still = np.zeros(self._states.shape[2])
+            return self._states[-1, 0], still, still
         row = min(int(t / self._period), len(self._states) - 2)
         one, two = self._states[row], self._states[row + 1]
         return evaluate(hermite(one, two, self._period), t - row * self._period, self._period)
@@ -60,7 +62,7 @@ def _state(setpoint: Any) -> Array:
 
 
 def hermite(one: Array, two: Array, span: float) -> Array:
-    """Return the coefficients (6, 6) of the quintic by the share of the span that meets both states (3, 6)."""
+    """Return the coefficients (6, joints) of the quintic by the share of the span that meets both states."""
     scale = np.array([[1.0], [span], [span**2]])
     (p0, v0, a0), (p1, v1, a1) = one * scale, two * scale
     d, e, f = p1 - p0 - v0 - a0 / 2, v1 - v0 - a0, a1 - a0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -13,10 +14,12 @@ from teachpath_client.driver.player import PlayerState, SetpointPlayer
 from teachpath_proto.motion_pb2 import JointState
 from teachpath_proto.motion_pb2 import Setpoint as SetpointMessage
 
+JOINT_COUNTS: Final = (6, 7)  # that an arm may have
+
 
 @dataclass(frozen=True, eq=False)
 class Setpoint:
-    """One control period; joint arrays are (6,) in rad, rad/s, rad/s^2, `way_to_rest` (n, 3, 6) in the same."""
+    """One control period; joint arrays are (joints,) in rad, rad/s, rad/s^2, `way_to_rest` (n, 3, joints)."""
 
     cycle: int
     nominal_ns: int
@@ -38,13 +41,20 @@ def decode_setpoint(payload: bytes) -> Setpoint:
         m = SetpointMessage.FromString(payload)
         arrays = [np.array(values, dtype=np.float64) for values in (m.position, m.velocity, m.acceleration)]
         ways = (m.way_to_rest, m.way_to_rest_velocity, m.way_to_rest_acceleration)
-        way = np.stack([np.frombuffer(rows, dtype="<f8").reshape(-1, 6) for rows in ways], axis=1)
+        count = len(arrays[0])
+        way = np.stack([np.frombuffer(rows, dtype="<f8").reshape(-1, count) for rows in ways], axis=1)
     except Exception as error:
         raise ValueError(f"no setpoint: {error}") from None
-    if any(array.shape != (6,) for array in arrays) or not all(np.isfinite(array).all() for array in (*arrays, way)):
-        raise ValueError(f"setpoint {m.cycle} needs 6 finite numbers a joint array")
+    fits = count in JOINT_COUNTS and all(len(array) == count for array in arrays)
+    if not fits or not all(np.isfinite(array).all() for array in (*arrays, way)):
+        raise ValueError(f"setpoint {m.cycle} needs {needed_joints(count)} finite numbers a joint array")
     position, velocity, acceleration = arrays
     return Setpoint(m.cycle, m.nominal_ns, position, velocity, acceleration, m.gripper_closed, m.execution, way)
+
+
+def needed_joints(count: int) -> str:
+    """Return how many joints an arm has, in words: as many as were given, where an arm may have so many."""
+    return str(count) if count in JOINT_COUNTS else " or ".join(map(str, JOINT_COUNTS))
 
 
 def joint_state(
@@ -61,8 +71,8 @@ def joint_state(
 
     Args:
         player: what it plays.
-        position: (6,) measured [rad].
-        velocity: (6,) measured [rad/s].
+        position: (joints,) measured [rad].
+        velocity: (joints,) measured [rad/s].
         enabled: whether the drives are on.
         protective_stop: whether the arm's own controller has stopped it.
         fault: what is wrong with the arm, in words; empty: nothing.
@@ -76,7 +86,7 @@ def joint_state(
         execution=newest.execution if newest else "",
         position=position,
         velocity=velocity,
-        torque=[0.0] * 6,
+        torque=[0.0] * len(position),
         tracking_error=float(np.abs(player.target.position - np.asarray(position)).max()),
         missed=player.missed,
         late=player.late,

@@ -41,15 +41,15 @@ class SetpointLike(Protocol):
 
     @property
     def position(self) -> Array:
-        """(6,) [rad]."""
+        """(joints,) [rad]."""
 
     @property
     def velocity(self) -> Array:
-        """(6,) [rad/s]."""
+        """(joints,) [rad/s]."""
 
     @property
     def acceleration(self) -> Array:
-        """(6,) [rad/s^2]."""
+        """(joints,) [rad/s^2]."""
 
     @property
     def gripper_closed(self) -> bool:
@@ -61,7 +61,7 @@ class SetpointLike(Protocol):
 
     @property
     def way_to_rest(self) -> Array:
-        """(n, 3, 6) position, velocity, acceleration a period apart, the first one behind it, to rest; else empty."""
+        """(n, 3, joints) position, velocity, acceleration a period apart, the first behind it, to rest; else empty."""
 
 
 class PlayerState(StrEnum):
@@ -75,7 +75,7 @@ class PlayerState(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class TargetMotion:
-    """What the arm should do now: (6,) in rad, rad/s, rad/s^2."""
+    """What the arm should do now: (joints,) in rad, rad/s, rad/s^2."""
 
     position: Array
     velocity: Array
@@ -86,13 +86,13 @@ class SetpointPlayer:
     """Plays the setpoints of one arm.
 
     Args:
-        position: (6,) where the arm rests [rad].
+        position: (joints,) where the arm rests [rad].
         delay: between a setpoint's nominal time and its playing [s].
         period: between two setpoints, until two have come [s].
     """
 
     def __init__(self, position: Array | Sequence[float], *, delay: float = 0.03, period: float = 0.004) -> None:
-        still = np.zeros(6)
+        still = np.zeros(len(position))
         self.state: PlayerState = PlayerState.IDLE
         self.target: TargetMotion = TargetMotion(np.array(position, dtype=np.float64), still, still)
         self.missed: int = 0  # setpoints that never came since the execution began
@@ -123,8 +123,11 @@ class SetpointPlayer:
     def add(self, setpoint: SetpointLike, now_ns: int) -> bool:
         """Take a setpoint that came at `now_ns`; returns whether it is to be played.
 
-        One that is older than those before changes nothing; one that does not begin where the arm rests is late.
+        One that is older than those before, or for another number of joints, changes nothing; one that does not begin
+        where the arm rests is late.
         """
+        if len(setpoint.position) != len(self.target.position):
+            return False
         if self.execution != setpoint.execution:
             return self._begin(setpoint, now_ns)
         if setpoint.cycle <= self._newest:
@@ -190,14 +193,14 @@ class SetpointPlayer:
         return True
 
     def rest_at(self, position: Array | Sequence[float]) -> None:
-        """Rest at a measured configuration (6,) [rad]: somebody has moved the arm while nothing was played.
+        """Rest at a measured configuration (joints,) [rad]: somebody has moved the arm while nothing was played.
 
         Raises:
             ValueError: the player is in motion.
         """
         if not self.at_rest:
             raise ValueError("the player is in motion; it rests where it comes to rest")
-        still = np.zeros(6)
+        still = np.zeros(len(position))
         self.target = TargetMotion(np.array(position, dtype=np.float64), still, still)
         self.last_reached, self._way, self.state = None, None, PlayerState.IDLE
 
@@ -259,7 +262,7 @@ class SetpointPlayer:
         last = self.last_reached
         if last is None:
             return
-        still = np.zeros(6)
+        still = np.zeros(len(last.position))
         if self._way is not None:
             since = self._played - self._time_of(last)
             p, v, a = self._way(since)

@@ -118,10 +118,10 @@ class JointMessage:
     Attributes:
         stamp_ns: when the arm was so [ns since the Unix epoch].
         execution: id of the one whose setpoints it plays; empty: none.
-        position: (6,) of the joints [rad].
-        velocity: (6,) of the joints [rad/s].
-        speed: (6,) largest speed of each joint since the message before, signed [rad/s].
-        torque: (6,) of the joints [N m]; zeros where the arm does not measure it.
+        position: (joints,) of the joints [rad].
+        velocity: (joints,) of the joints [rad/s].
+        speed: (joints,) largest speed of each joint since the message before, signed [rad/s].
+        torque: (joints,) of the joints [N m]; zeros where the arm does not measure it.
         tracking_error: largest over the joints since the message before [rad].
         lateness: of setpoints, the largest since the message before [s]; null: none was sent.
         missed: setpoints that never came since the execution began.

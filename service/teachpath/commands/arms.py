@@ -54,9 +54,8 @@ def add(
         stored = store.arms.add(arm, Path(file).name)
     note(settings, f"add arm {name}@{stored.version} of {Path(file).name}, {stored.hash}")
     moves = f"Make it the arm of the station: teachpath serve --arm {name} (setting motion.arm)"
-    shown = "It is kept and shown; plans are made for arms of six joints."
     said = f"arm {name}@{stored.version}: {len(arm.links)} joints, {stored.hash[:12]}"
-    print_answer(stored, said, *_notes(arm), moves if len(arm.links) == 6 else shown, json_=json_)
+    print_answer(stored, said, *_notes(arm), moves, json_=json_)
 
 
 @app.command("list")

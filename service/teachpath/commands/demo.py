@@ -27,7 +27,10 @@ def demo(
         typer.Option(help="Instead of the synthetic hand: import a RoboTasks file and replay it."),
     ] = None,
     arm: Annotated[
-        str, typer.Option(help="Published Puma 560 (teachpath arms), kept arm (arm list), or example: six-axis.")
+        str,
+        typer.Option(
+            help="Published Puma 560 (teachpath arms), kept arm (arm list), or example: six-axis, seven-axis."
+        ),
     ] = "",
     port: Annotated[int | None, typer.Option(help="Web port; 8765, or a free one when that is taken.")] = None,
     data: Annotated[Path | None, typer.Option(help="Keep the data in this folder; else it is thrown away.")] = None,

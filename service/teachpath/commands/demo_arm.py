@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final
 
 from teachpath.commands.options import opened_store
@@ -10,14 +9,12 @@ from teachpath.config import Settings
 from teachpath.errors import UnusableInput
 from teachpath.io.arm_models.arm_reader import read_arm
 from teachpath.io.arm_models.examples import EXAMPLES
-from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import TOOL_LENGTH, VARIANTS
-from teachpath.motion.planning.model_arms import check_joints
 from teachpath.records import Pose, SerialArm
 from teachpath.stored_arm import with_stored_arm
 
 # Where the examples stand at the table of the demo.
-PLACES: Final[Mapping[str, Pose]] = {"six-axis": ((0.05, 0.0, 0.5), (1.0, 0.0, 0.0, 0.0))}
+PLACE: Final[Pose] = ((0.05, 0.0, 0.5), (1.0, 0.0, 0.0, 0.0))
 
 
 def prepare_arm(settings: Settings, *, carries: bool) -> None:
@@ -28,7 +25,7 @@ def prepare_arm(settings: Settings, *, carries: bool) -> None:
         carries: whether there is an object to carry.
 
     Raises:
-        UnusableInput: there is no such arm, it has seven joints, or no gripper for the object.
+        UnusableInput: there is no such arm, or it has no gripper for the object.
     """
     name = settings.motion.arm
     if name is None:
@@ -51,6 +48,4 @@ def _example(name: str, settings: Settings, kept: list[str]) -> SerialArm:
             f"there is no arm {name!r}: published ones are {', '.join(VARIANTS)}, examples {', '.join(EXAMPLES)}, in "
             f"this data folder {', '.join(kept) or 'none'}; add yours with: teachpath arm add {name} MODEL --gripper"
         )
-    model = read_arm(name, name=name, base=PLACES.get(name, PLACES["six-axis"]), gripper_length=TOOL_LENGTH)
-    check_joints(Arm.of_model(model, settings.motion))
-    return model
+    return read_arm(name, name=name, base=PLACE, gripper_length=TOOL_LENGTH)

@@ -191,7 +191,7 @@ class Execution:
         """Begin a step or a way back, unless the execution is being ended, or the nominal motion is not at rest.
 
         Args:
-            start_q: (6,) where the detour begins [rad].
+            start_q: (joints,) where the detour begins [rad].
         """
         if self._is_over or not self.program.at_rest:
             return

@@ -40,6 +40,7 @@ class JointStateMonitor:
 
     Args:
         robot: name of the arm.
+        joints: number of the arm's joints.
         silence: without a joint state after which the arm counts as gone [s].
         clock: returns monotonic nanoseconds.
 
@@ -48,8 +49,9 @@ class JointStateMonitor:
         listened_ns: for how long the control loop has listened in all, at its newest look [ns].
     """
 
-    def __init__(self, robot: str, silence: float, clock: Callable[[], int]) -> None:
+    def __init__(self, robot: str, joints: int, silence: float, clock: Callable[[], int]) -> None:
         self.robot: str = robot
+        self._joints = joints
         self._silence = silence
         self._clock = clock
         self._payloads: deque[tuple[int, bytes]] = deque(maxlen=1)
@@ -83,7 +85,10 @@ class JointStateMonitor:
         """Decode the newest message, if one has come since the last call."""
         try:
             came_ns, payload = self._payloads.pop()
-            self._latest = (came_ns, self.listened_ns, wire.decode_state(payload))
+            state = wire.decode_state(payload)
+            if len(state.position) != self._joints:
+                raise UnusableInput(_other_arm(len(state.position), self._joints))
+            self._latest = (came_ns, self.listened_ns, state)
         except IndexError:
             return
         except UnusableInput as error:
@@ -135,7 +140,7 @@ class JointStateMonitor:
         return state
 
     def resting_q(self, max_speed: float) -> Array:
-        """Return the configuration (6,) in which the arm rests [rad].
+        """Return the configuration (joints,) in which the arm rests [rad].
 
         Args:
             max_speed: of a joint that counts as resting [rad/s].
@@ -149,6 +154,10 @@ class JointStateMonitor:
         if speed > max_speed:
             raise Conflict(f"the arm still moves at {speed:.2f} rad/s; wait until it rests")
         return arm.position
+
+
+def _other_arm(joints: int, needed: int) -> str:
+    return f"a joint state has {joints} joints, and this station's arm {needed}: is it the driver of another arm?"
 
 
 class SetpointStallDetector:

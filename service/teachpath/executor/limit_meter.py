@@ -29,7 +29,7 @@ class LimitMeter:
 
     Args:
         rate: setpoints a second [Hz].
-        start_q: (6,) where the arm rests at the beginning [rad].
+        start_q: (joints,) where the arm rests at the beginning [rad].
         arm: whose limits they are.
         previous: a meter whose largest use is kept; used when the arm was moved by hand since.
 
@@ -46,13 +46,13 @@ class LimitMeter:
         self._points = monitored_points(start_q, arm)
         self._scale = np.array([rate, rate**2, rate**3])[:, None] / np.stack(
             [limits.speed, limits.acceleration, limits.jerk]
-        )  # (3, 6)
+        )  # (3, joints)
         self._last: deque[Array] = deque([start_q] * 3, maxlen=3)  # newest last
         self.max_use: float = previous.max_use if previous else 0.0
         self.max_use_location: str = previous.max_use_location if previous else ""
 
     def add(self, position: Array, where: HasLocation) -> None:
-        """Measure the setpoint `position` (6,) [rad]; when it uses most so far, keep the location of `where`."""
+        """Measure the setpoint `position` (joints,) [rad]; when it uses most so far, keep the location of `where`."""
         third, second, first = self._last
         differences = np.stack(
             [position - first, position - 2 * first + second, position - 3 * first + 3 * second - third]
@@ -61,7 +61,7 @@ class LimitMeter:
         use = np.abs(differences) * self._scale
         worst = int(np.argmax(use))
         if use.flat[worst] > self.max_use:
-            kind, joint = divmod(worst, 6)
+            kind, joint = divmod(worst, len(self._names))
             self.max_use = float(use.flat[worst])
             self.max_use_location = f"{_NAMES[kind]} of {self._names[joint]} {where.location}"
         if self._tool_speed < np.inf:

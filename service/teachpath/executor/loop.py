@@ -73,11 +73,13 @@ class Executor:
         self._time = time_source or TimeSource()
         self._period = 1.0 / self._settings.rate
         self._pacer = Pacer(round(1e9 * self._period), self._time)
-        self._joint_states = JointStateMonitor(robot, self._settings.silence, self._time.monotonic_ns)
         self._stall_detector = SetpointStallDetector()
         self._unasked = UnaskedMotionDetector(self._settings.unasked_motion, self._settings.silence)
         motion = motion or MotionSettings()
         self._arm = arm or Arm.of_settings(motion)
+        self._joint_states = JointStateMonitor(
+            robot, self._arm.joint_count, self._settings.silence, self._time.monotonic_ns
+        )
         certificates = CertificateCheck(bus, keys, signing_key, motion, self._arm, self._time)
         programs = ProgramFactory(
             bus, keys, self._settings, motion, self._arm, self._joint_states, self._time, certificates

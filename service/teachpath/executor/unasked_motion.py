@@ -34,8 +34,8 @@ class UnaskedMotionDetector:
         self._silence = silence
         self._lock = threading.Lock()
         self._resting_since: int | None = None  # [ns of the clock] when it had to begin to come to rest
-        self._rest_q: Array | None = None  # (6,) where it came to rest
-        self._still_q: Array | None = None  # (6,) where an arm that moved unasked has been since `_still_since`
+        self._rest_q: Array | None = None  # (joints,) where it came to rest
+        self._still_q: Array | None = None  # (joints,) where an arm that moved unasked has been since `_still_since`
         self._still_since = 0
         self._largest = 0.0  # [rad] that a joint was away from where it rested
 

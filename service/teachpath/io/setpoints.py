@@ -1,4 +1,4 @@
-"""Logs of setpoints as CSV: t, q1 to q6, perhaps on_path or speeds and accelerations; lines with # are remarks."""
+"""Logs of setpoints as CSV: t, q1 to q6 or q7, perhaps on_path or speeds and accelerations; # begins remarks."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ import numpy as np
 from teachpath.errors import UnusableRecording
 from teachpath.records import Array
 
-COLUMNS = ["t", "q1", "q2", "q3", "q4", "q5", "q6"]
+JOINT_COUNTS = (6, 7)  # that an arm may have
 ON_PATH = "on_path"
-DERIVATIVES = [f"{quantity}{joint}" for quantity in "va" for joint in range(1, 7)]  # which are not read
 LARGEST = 256 * 1024 * 1024  # bytes
 
 
@@ -20,7 +19,7 @@ def read_setpoints(content: bytes, name: str) -> tuple[Array, Array, Array | Non
     """Read a log of setpoints.
 
     Returns:
-        times (n,) [s], positions (n, 6) [rad], and whether each is on the path (n,) when the file says it.
+        times (n,) [s], positions (n, joints) [rad], and whether each is on the path (n,) when the file says it.
 
     Raises:
         UnusableRecording: with the line that is wrong.
@@ -33,17 +32,31 @@ def read_setpoints(content: bytes, name: str) -> tuple[Array, Array, Array | Non
         raise UnusableRecording(f"{name}: this is no CSV ({error})") from None
     numbered = [(line, row) for line, row in enumerate(rows, 1) if row and not row[0].startswith("#")]
     header = [column.strip() for column in numbered[0][1]] if numbered else []
-    if header not in (COLUMNS, [*COLUMNS, ON_PATH], [*COLUMNS, *DERIVATIVES]):
-        raise UnusableRecording(f"{name}: the first line must be {','.join(COLUMNS)} (s and rad), perhaps with on_path")
+    count = next((count for count in JOINT_COUNTS if header in _headers(count)), None)
+    if count is None:
+        first = " or ".join(",".join(_headers(count)[0]) for count in JOINT_COUNTS)
+        raise UnusableRecording(f"{name}: the first line must be {first} (s and rad), perhaps with on_path")
     values = np.array([_numbers(row, line, len(header), name) for line, row in numbered[1:]])
     if len(values) < 4:
         raise UnusableRecording(f"{name}: {len(values)} setpoints are too few to difference; at least 4")
     backward = np.flatnonzero(np.diff(values[:, 0]) <= 0)
     if len(backward):
         raise UnusableRecording(f"{name}, line {numbered[backward[0] + 2][0]}: time does not go on")
-    if np.abs(values[:, 1:7]).max() > 4 * np.pi:
-        raise UnusableRecording(f"{name}: a joint is at {np.abs(values[:, 1:7]).max():.1f} rad; are these degrees?")
-    return values[:, 0], values[:, 1:7], values[:, 7] if ON_PATH in header else None
+    if np.abs(values[:, 1 : count + 1]).max() > 4 * np.pi:
+        raise UnusableRecording(
+            f"{name}: a joint is at {np.abs(values[:, 1 : count + 1]).max():.1f} rad; are these degrees?"
+        )
+    return values[:, 0], values[:, 1 : count + 1], values[:, count + 1] if ON_PATH in header else None
+
+
+def _headers(count: int) -> list[list[str]]:
+    """Return the first lines that a log of so many joints may have; speeds and accelerations are not read."""
+    columns = ["t", *(f"q{joint}" for joint in range(1, count + 1))]
+    return [
+        columns,
+        [*columns, ON_PATH],
+        [*columns, *(f"{quantity}{joint}" for quantity in "va" for joint in range(1, count + 1))],
+    ]
 
 
 def _numbers(row: list[str], line: int, count: int, name: str) -> list[float]:

@@ -30,8 +30,8 @@ class MotionSettings:
     payload_mass: Annotated[float, Ge(0), Le(10)] = 0.0
     # [m] its centre of mass in the flange's frame: z along the axis of joint 6, y as the fingers close
     payload_center: Annotated[tuple[Annotated[float, Ge(-0.5), Le(0.5)], ...], Len(3, 3)] = (0.0, 0.0, 0.05)
-    # [rad] joints 1 to 6 where the arm waits: elbow up, tool down, above the table
-    home: Annotated[tuple[float, ...], Len(6, 6)] = (0.365, 1.663, -3.177, 0.0, -1.628, 0.365)
+    # [rad] the joints where the arm waits: elbow up, tool down, above the table
+    home: Annotated[tuple[float, ...], Len(6, 7)] = (0.365, 1.663, -3.177, 0.0, -1.628, 0.365)
     # [m] that arm and carried object stay away from obstacles and the arm from itself
     clearance_min: Annotated[float, Ge(0)] = 0.005
     # [m] that the carried object may dip into what it stands on at its start

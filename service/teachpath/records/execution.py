@@ -12,7 +12,7 @@ from teachpath_proto.control import ExecutorState
 
 @dataclass(frozen=True, eq=False)
 class Setpoint:
-    """What the arm should do in one control period; joint arrays are (6,) in rad, rad/s, rad/s^2."""
+    """What the arm should do in one control period; joint arrays are (joints,) in rad, rad/s, rad/s^2."""
 
     cycle: int
     nominal_ns: int
@@ -23,8 +23,8 @@ class Setpoint:
     gripper_closed: bool
     execution: str
     on_path: bool = False
-    # (n, 3, 6) position, velocity, acceleration, one control period apart, the first one period behind this setpoint;
-    # checked against all limits
+    # (n, 3, joints) position, velocity, acceleration, one control period apart, the first one period behind this
+    # setpoint; checked against all limits
     way_to_rest: Array = field(default_factory=lambda: np.empty((0, 3, 6)))
     from_rest: bool = (
         False  # the motion begins anew, where the arm rests: what was sent before was not played to its end
@@ -33,7 +33,7 @@ class Setpoint:
 
 @dataclass(frozen=True, eq=False)
 class JointState:
-    """What the arm does; joint arrays are (6,), `tracking_error` is the largest over the joints [rad].
+    """What the arm does; joint arrays are (joints,), `tracking_error` is the largest over the joints [rad].
 
     An arm that is `holding` follows the way to rest of setpoint `cycle`; once it is `stopped`, it rests at its end.
 

@@ -206,14 +206,14 @@ class Plan:
         path_version: number of the path's version.
         scene: that it was checked against.
         lengths: (n,) arc length of the nodes [m], from 0, strictly increasing.
-        joints: (n, 6) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters from 0
-            to 1.
+        joints: (n, joints) configurations at the nodes [rad]; between them a quintic spline runs, on even parameters
+            from 0 to 1.
         squared_rates: (m,) coefficients of the square of the parameter's rate at full speed, a quadratic spline on
             even intervals [1/s^2].
-        limits: (3, 6) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they follow the
-            path, at any override.
-        above_start: (6,) configuration above the start, from where the object is grasped.
-        above_goal: (6,) configuration above the goal, to where the arm retreats.
+        limits: (3, joints) of the joints' speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] while they follow
+            the path, at any override.
+        above_start: (joints,) configuration above the start, from where the object is grasped.
+        above_goal: (joints,) configuration above the goal, to where the arm retreats.
         duration: of the path at full speed [s].
         certificate: the proof that the arm can follow it.
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.

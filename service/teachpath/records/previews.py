@@ -29,7 +29,7 @@ class MotionPreview:
     Attributes:
         plan: id of the plan.
         times: (n,) [s], from 0.
-        joints: (n, 6) configurations [rad].
+        joints: (n, joints) configurations [rad].
         progress: (n,) share of the learned path's length that is done.
         gripper_closed: (n,) whether the gripper is closed.
         object_position: (n, 3) centre of the carried object [m, world]; (0, 3) when the scene has none.

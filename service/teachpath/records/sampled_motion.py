@@ -18,9 +18,9 @@ class SampledMotion:
         joint_names: in the order of the columns, as the arm calls them.
         rate: instants a second [Hz].
         times: (n,) [s], from 0.
-        positions: (n, 6) of the joints [rad].
-        velocities: (n, 6) [rad/s].
-        accelerations: (n, 6) [rad/s^2].
+        positions: (n, joints) of the joints [rad].
+        velocities: (n, joints) [rad/s].
+        accelerations: (n, joints) [rad/s^2].
     """
 
     name: str

@@ -22,7 +22,7 @@ class JointFrame:
 
     Attributes:
         state: the newest joint state.
-        speed: (6,) joint velocity of largest size since the frame before [rad/s].
+        speed: (joints,) joint velocity of largest size since the frame before [rad/s].
         tracking_error: largest since the frame before [rad].
         lateness: of the setpoints since the frame before, the largest [s], or None when none was sent.
     """
@@ -97,7 +97,7 @@ class JointStateSubscriber:
             return None
         return JointFrame(
             states[-1],
-            tuple(max((float(s.velocity[k]) for s in states), key=abs) for k in range(6)),
+            tuple(max((float(s.velocity[k]) for s in states), key=abs) for k in range(len(states[-1].velocity))),
             max(state.tracking_error for state in states),
             max(lateness, default=None),
         )

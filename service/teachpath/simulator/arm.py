@@ -36,11 +36,12 @@ class SimulatedArm:
         self._settings, self._start = settings, np.array(position)
         self._max_torque = arm.limits.torque
         self._object, self._arm = scene.carried, arm
-        self._friction = np.array(self._model.dof_frictionloss[:6])
+        self._count = arm.joint_count
+        self._friction = np.array(self._model.dof_frictionloss[: self._count])
         self._acceleration = np.zeros(self._model.nv)
         self._rate = np.zeros(self._model.nv)
         self._force = np.zeros(self._model.nv)
-        self._integral = np.zeros(6)  # [N m]
+        self._integral = np.zeros(self._count)  # [N m]
         self.gripper_opening: float | None = None
         self.data: Any = mujoco.MjData(self._model)
         self.reset()
@@ -48,20 +49,20 @@ class SimulatedArm:
     def reset(self) -> None:
         """Put the arm where it began, at rest and with its gripper open, and the object at its start."""
         mujoco.mj_resetData(self._model, self.data)
-        self.data.qpos[:6] = self._start
+        self.data.qpos[: self._count] = self._start
         self._integral[:] = 0.0
         self._open()
         mujoco.mj_forward(self._model, self.data)
 
     @property
     def position(self) -> Array:
-        """Joint angles (6,) [rad]."""
-        return np.array(self.data.qpos[:6])
+        """Joint angles (joints,) [rad]."""
+        return np.array(self.data.qpos[: self._count])
 
     @property
     def velocity(self) -> Array:
-        """Joint velocities (6,) [rad/s]."""
-        return np.array(self.data.qvel[:6])
+        """Joint velocities (joints,) [rad/s]."""
+        return np.array(self.data.qvel[: self._count])
 
     @property
     def at_rest(self) -> bool:
@@ -70,15 +71,15 @@ class SimulatedArm:
 
     @property
     def torque(self) -> Array:
-        """Torques of the motors at the joints (6,) [N m]."""
-        return np.array(self.data.qfrc_actuator[:6])
+        """Torques of the motors at the joints (joints,) [N m]."""
+        return np.array(self.data.qfrc_actuator[: self._count])
 
     @property
     def object_pose(self) -> tuple[Vector, Quaternion]:
         """Position [m] and orientation of the carried object; all zeros when the scene has none."""
         if self._object is None:
             return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
-        x, y, z, w, i, j, k = (float(v) for v in self.data.qpos[6:13])
+        x, y, z, w, i, j, k = (float(v) for v in self.data.qpos[self._count : self._count + 7])
         return (x, y, z), (w, i, j, k)
 
     def step(self, position: Array, velocity: Array, acceleration: Array) -> None:
@@ -90,21 +91,23 @@ class SimulatedArm:
         """
         mujoco.mj_step1(self._model, self.data)
         w = self._settings.bandwidth
-        error = position - self.data.qpos[:6]
-        self._acceleration[:6] = acceleration + 3 * w * (velocity - self.data.qvel[:6]) + 3 * w**2 * error
+        error = position - self.data.qpos[: self._count]
+        self._acceleration[: self._count] = (
+            acceleration + 3 * w * (velocity - self.data.qvel[: self._count]) + 3 * w**2 * error
+        )
         force = self._force_of(self._acceleration)
-        self._rate[:6] = w**3 * error
+        self._rate[: self._count] = w**3 * error
         integral = self._integral + self._force_of(self._rate) * (STEP_NS / 1e9)
         self._integral = np.clip(integral, -2 * self._friction, 2 * self._friction)
-        torque = force + self.data.qfrc_bias[:6] - self.data.qfrc_passive[:6]
+        torque = force + self.data.qfrc_bias[: self._count] - self.data.qfrc_passive[: self._count]
         torque += self._friction * np.tanh(velocity / 0.02) + self._integral
-        self.data.ctrl[:6] = np.clip(torque, -self._max_torque, self._max_torque)
+        self.data.ctrl[: self._count] = np.clip(torque, -self._max_torque, self._max_torque)
         mujoco.mj_step2(self._model, self.data)
 
     def _force_of(self, acceleration: Array) -> Array:
-        """Return the torques (6,) that inertia asks for at accelerations (nv,) of all degrees of freedom."""
+        """Return the torques (joints,) that inertia asks for at accelerations (nv,) of all degrees of freedom."""
         mujoco.mj_mulM(self._model, self.data, self._force, acceleration)
-        return np.array(self._force[:6])
+        return np.array(self._force[: self._count])
 
     def grasp(self) -> bool:
         """Grasp the object as it lies between the fingers; return False when the gripper does not take it there."""
@@ -113,7 +116,7 @@ class SimulatedArm:
         self.gripper_opening = 0.0
         if self._object is None:
             return False
-        hand, carried = self.data.body("link6"), self.data.body(CARRIED_BODY)
+        hand, carried = self.data.body(f"link{self._count}"), self.data.body(CARRIED_BODY)
         rotation = hand.xmat.reshape(3, 3)
         pose = np.eye(4)
         pose[:3, :3] = rotation.T @ carried.xmat.reshape(3, 3)

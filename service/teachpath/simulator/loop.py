@@ -57,7 +57,7 @@ class Simulator:
         Args:
             scene: what stands around the arm until a reset brings another one.
             robot: name of the arm in its keys.
-            home: (6,) configuration in which the arm starts [rad].
+            home: (joints,) configuration in which the arm starts [rad].
             arm: that is simulated; the default variant when None.
             time_source: the machine's clocks by default.
         """

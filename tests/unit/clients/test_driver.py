@@ -278,3 +278,9 @@ def test_nothing_moves_before_the_first_setpoint() -> None:
     assert player.advance(0.001, NOW) is None
     np.testing.assert_array_equal(player.target.position, GOAL)
     assert (player.state, player.execution, player.at_rest) == (PlayerState.IDLE, "", True)
+
+
+def test_a_setpoint_for_another_arm_is_left_out() -> None:
+    player, others = SetpointPlayer(START, delay=DELAY), np.zeros(7)
+    assert not player.add(Setpoint(0, NOW, others, others, others), NOW)
+    assert player.add(Setpoint(0, NOW, START, START, START), NOW)

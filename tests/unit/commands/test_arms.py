@@ -19,7 +19,7 @@ def test_an_arm_is_added_with_versions_and_listed(tmp_path: Path) -> None:
     assert "arm light@1: 6 joints" in said(tmp_path, "add", "light", "six-axis")
     assert "arm light@1" in said(tmp_path, "add", "light", "six-axis")  # the same one
     assert "arm light@2" in said(tmp_path, "add", "light", "six-axis", "--base", "0,0,0.5")
-    assert "plans are made for arms of six joints" in said(tmp_path, "add", "seven", "seven-axis", "--tool", "link7")
+    assert "teachpath serve --arm seven" in said(tmp_path, "add", "seven", "seven-axis", "--tool", "link7")
     assert "arm light@3" in said(tmp_path, "add", "light", "six-axis", "--base", "0,0,0.5", "--gripper")
     assert re.search(r"light +3 +6 .*\n.*seven +1 +7", said(tmp_path, "list"))
 

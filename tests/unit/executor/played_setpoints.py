@@ -73,7 +73,7 @@ class PlayedBench(Bench):
             cycle=newest.cycle if newest else 0,
             position=player.target.position,
             velocity=player.target.velocity,
-            torque=np.zeros(6),
+            torque=np.zeros(len(player.target.position)),
             tracking_error=0.0,
             missed=player.missed,
             holding=player.state in (PlayerState.STOPPING, PlayerState.STOPPED),

@@ -28,8 +28,8 @@ MAX_ERROR = 3e-4  # [m] of the simulated tool
 SHORT = learned(clamped(np.array([[0.45, -0.1, 0.65], [0.5, -0.05, 0.7], [0.5, 0.05, 0.7], [0.45, 0.1, 0.65]])))
 
 
-def light(gripper_length: float = 0.0) -> tuple[Arm, MotionSettings]:
-    model = read_arm("six-axis", name="light", base=BASE, gripper_length=gripper_length)
+def light(gripper_length: float = 0.0, example: str = "six-axis") -> tuple[Arm, MotionSettings]:
+    model = read_arm(example, name="light", base=BASE, gripper_length=gripper_length)
     motion = replace(MOTION, arm="light")
     arm = Arm.of_model(model, motion)
     return arm, with_home(motion, arm)
@@ -68,12 +68,21 @@ def test_it_carries_an_object_with_the_gripper_on_its_flange(carrying: Plan) -> 
     np.testing.assert_allclose(bench.object_positions[-1], goal, atol=2e-3)
 
 
-def test_without_a_gripper_its_tool_follows_the_path() -> None:
-    arm, motion = light()
+@pytest.mark.parametrize("example", ["six-axis", "seven-axis"])
+def test_without_a_gripper_its_tool_follows_the_path(example: str) -> None:
+    arm, motion = light(example=example)
     moved = planned(SHORT, empty_scene(), arm, motion)
     bench = MovedBench(moved, motion=motion, arm=arm)
     bench.run_whole(moved)
     check_motion(bench, arm, SHORT)
+
+
+def test_the_driver_of_an_arm_with_other_joints_is_not_heard(caplog: pytest.LogCaptureFixture) -> None:
+    arm, motion = light(example="seven-axis")
+    bench = Bench(motion=motion, arm=arm, position=np.zeros(6))
+    bench.when(lambda: bench.now > 0, bench.stop.set)
+    bench.run()
+    assert "a joint state has 6 joints, and this station's arm 7: is it the driver of another arm?" in caplog.text
 
 
 def test_a_plan_is_of_one_version_of_an_arm(carrying: Plan) -> None:

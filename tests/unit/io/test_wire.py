@@ -2,6 +2,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from google.protobuf.descriptor import FieldDescriptor
 from google.protobuf.message import Message
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io import wire
-from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest
+from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Setpoint
 from teachpath_proto import motion_pb2, tracker_pb2
 from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
 from tests.unit.recording.hands import sample
@@ -195,3 +196,16 @@ def test_a_drivers_fault_is_a_line_that_can_be_shown_and_its_state_is_no_flood()
     state.position.extend([0.0] * 1000)
     with pytest.raises(UnusableInput, match="got 1006 numbers"):
         wire.decode_state(state.SerializeToString())
+
+
+@pytest.mark.parametrize("count", [6, 7])
+def test_setpoints_and_states_have_as_many_joints_as_the_arm(count: int) -> None:
+    joints, way = np.linspace(0.0, 1.0, count), np.random.default_rng(0).normal(size=(4, 3, count))
+    sent = wire.encode_setpoint(Setpoint(1, 2, 3, joints, -joints, 2 * joints, True, "e", way_to_rest=way))
+    came = wire.decode_setpoint(sent)
+    np.testing.assert_array_equal([came.position, came.velocity, came.acceleration], [joints, -joints, 2 * joints])
+    np.testing.assert_array_equal(came.way_to_rest, way)
+    broken = motion_pb2.Setpoint.FromString(sent)
+    broken.velocity.pop()
+    with pytest.raises(UnusableInput, match=f"needs {count} finite numbers a joint array, got {count - 1} numbers"):
+        wire.decode_setpoint(broken.SerializeToString())

@@ -35,7 +35,7 @@ class TeleopProgram:
         hand: samples of the tracker and state of its clutch; closed with the program.
         request: tracker, calibration and scale.
         scene: what the station has around the arm.
-        start_q: (6,) where the arm rests [rad].
+        start_q: (joints,) where the arm rests [rad].
         arm: that follows.
         joint_states: monitor of the arm, which says what its gripper does and where the object is.
         return_timeout: within which a hand that was lost is followed again while its clutch stays pressed [s].
@@ -73,7 +73,9 @@ class TeleopProgram:
         )
         if scene.carried is not None:
             self._follower.load = Load(position=scene.carried.position)
-        self._state = MotionState(np.array(start_q), np.zeros(6), np.zeros(6), self._gripper.closed)
+        self._state = MotionState(
+            np.array(start_q), np.zeros(len(start_q)), np.zeros(len(start_q)), self._gripper.closed
+        )
         self._clutch = Clutch()
         self._return_timeout_ns = round(return_timeout * 1e9)
         self._followed = np.zeros(3)  # [m] where the hand was in the newest sample that was followed
@@ -110,7 +112,7 @@ class TeleopProgram:
 
     @property
     def current_q(self) -> Array:
-        """Configuration (6,) of the newest setpoint [rad]."""
+        """Configuration (joints,) of the newest setpoint [rad]."""
         return self._state.position
 
     @property
@@ -156,7 +158,7 @@ class TeleopProgram:
         return self._state
 
     def way_to_rest(self) -> tuple[Array, RestPoint]:
-        """Return the states (n, 3, 6) of the way to rest from the newest setpoint, and where it ends."""
+        """Return the states (n, 3, joints) of the way to rest from the newest setpoint, and where it ends."""
         way = self._follower.way_to_rest()
         return way, RestPoint(way[-1, 0] if len(way) else self._state.position)
 
@@ -165,7 +167,7 @@ class TeleopProgram:
         if self._clutch.engaged:
             self._pause(LATE_ARM_HINT)
         self._follower.rest_at(point.position)
-        still = np.zeros(6)
+        still = np.zeros(len(self._state.position))
         self._state = MotionState(point.position, still, still, self._gripper.closed)
         return ""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sized
 from typing import Final
 
 import numpy as np
@@ -13,6 +13,7 @@ from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto import motion_pb2
 from teachpath_proto.control import ExecutorState
 
+JOINT_COUNTS: Final = (6, 7)  # that an arm may have
 _WAY_FIELDS: Final = ("way_to_rest", "way_to_rest_velocity", "way_to_rest_acceleration")
 MAX_STATE_SIZE: Final = 16_384  # bytes
 MAX_FAULT_LENGTH: Final = 300  # characters of a fault, which everybody is shown
@@ -38,18 +39,18 @@ def encode_setpoint(setpoint: Setpoint) -> bytes:
 def decode_setpoint(payload: bytes) -> Setpoint:
     """Check a setpoint; raises UnusableInput when it is malformed or not finite."""
     m = parse(motion_pb2.Setpoint, payload)
-    where = f"setpoint {m.cycle}"
+    where, count = f"setpoint {m.cycle}", _joint_count(m.position)
     return Setpoint(
         cycle=m.cycle,
         nominal_ns=m.nominal_ns,
         sent_ns=m.sent_ns,
-        position=_joints(m.position, where),
-        velocity=_joints(m.velocity, where),
-        acceleration=_joints(m.acceleration, where),
+        position=_joints(m.position, count, where),
+        velocity=_joints(m.velocity, count, where),
+        acceleration=_joints(m.acceleration, count, where),
         gripper_closed=m.gripper_closed,
         execution=m.execution,
         on_path=m.on_path,
-        way_to_rest=_way(m, where),
+        way_to_rest=_way(m, count, where),
         from_rest=m.from_rest,
     )
 
@@ -95,7 +96,7 @@ def decode_state(payload: bytes) -> JointState:
     if len(payload) > MAX_STATE_SIZE:
         raise UnusableInput(f"a joint state of {len(payload)} bytes is over the limit of {MAX_STATE_SIZE}")
     m = parse(motion_pb2.JointState, payload)
-    where = f"joint state after setpoint {m.cycle}"
+    where, count = f"joint state after setpoint {m.cycle}", _joint_count(m.position)
     if len(m.object_position) != 3 or len(m.object_orientation) != 4:
         raise UnusableInput("joint state: the object needs a position of 3 numbers and an orientation of 4")
     x, y, z = m.object_position
@@ -103,9 +104,9 @@ def decode_state(payload: bytes) -> JointState:
     return JointState(
         stamp_ns=m.stamp_ns,
         cycle=m.cycle,
-        position=_joints(m.position, where),
-        velocity=_joints(m.velocity, where),
-        torque=_joints(m.torque, where),
+        position=_joints(m.position, count, where),
+        velocity=_joints(m.velocity, count, where),
+        torque=_joints(m.torque, count, where),
         tracking_error=m.tracking_error,
         missed=m.missed,
         holding=m.holding,
@@ -122,11 +123,16 @@ def decode_state(payload: bytes) -> JointState:
     )
 
 
-def _joints(values: Iterable[float], where: str) -> Array:
+def _joint_count(positions: Sized) -> int:
+    """Return how many numbers each of a message's joint arrays needs: as many as its positions, as an arm has them."""
+    return min(max(len(positions), JOINT_COUNTS[0]), JOINT_COUNTS[-1])
+
+
+def _joints(values: Iterable[float], count: int, where: str) -> Array:
     joints = np.array(list(values), dtype=np.float64)
-    if joints.shape != (6,) or not np.all(np.isfinite(joints)):
-        given = f"{len(joints)} numbers" if len(joints) != 6 else joints.tolist()
-        raise UnusableInput(f"{where}: needs 6 finite numbers a joint array, got {given}")
+    if joints.shape != (count,) or not np.all(np.isfinite(joints)):
+        given = f"{len(joints)} numbers" if len(joints) != count else joints.tolist()
+        raise UnusableInput(f"{where}: needs {count} finite numbers a joint array, got {given}")
     return joints
 
 
@@ -134,15 +140,15 @@ def _packed(rows: Array) -> bytes:
     return np.ascontiguousarray(rows, dtype="<f8").tobytes()
 
 
-def _way(message: motion_pb2.Setpoint, where: str) -> Array:
+def _way(message: motion_pb2.Setpoint, count: int, where: str) -> Array:
     contents = [getattr(message, name) for name in _WAY_FIELDS]
     sizes = [len(content) for content in contents]
-    if sizes[0] % 48 or len(set(sizes)) > 1:
+    if sizes[0] % (8 * count) or len(set(sizes)) > 1:
         raise UnusableInput(
-            f"{where}: positions, velocities and accelerations of its way to rest have {sizes} bytes; each needs 48 "
-            "(six 64-bit floats) a row, and all as many rows"
+            f"{where}: positions, velocities and accelerations of its way to rest have {sizes} bytes; each needs "
+            f"{8 * count} ({count} 64-bit floats) a row, and all as many rows"
         )
-    way = np.stack([np.frombuffer(content, dtype="<f8").reshape(-1, 6) for content in contents], axis=1)
+    way = np.stack([np.frombuffer(content, dtype="<f8").reshape(-1, count) for content in contents], axis=1)
     if not np.all(np.isfinite(way)):
         raise UnusableInput(f"{where}: its way to rest is not finite")
     return way

@@ -63,7 +63,7 @@ class Preview:
             drawing: the primitives of the arm, each in the frame of its link.
             arm: whose links they are.
             robot: name of the arm whose joint states are drawn.
-            home: (6,) configuration shown until the first joint state comes [rad].
+            home: (joints,) configuration shown until the first joint state comes [rad].
             statuses: returns the recordings whose hands are drawn, with their hands.
             clock: [s] monotonic.
         """
@@ -151,6 +151,8 @@ class Preview:
             state = decode_state(payload)
         except UnusableInput:
             return  # the next one comes in 10 ms; the executor reports it
+        if len(state.position) != self._arm.joint_count:
+            return  # as above
         self._pose_arm(state.position, gripper_closed=state.gripper_closed)
         if any(drawn.has_object for drawn in self._hands.values()):
             return  # the object is in a hand

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from teachpath.errors import UnusableRecording
 from teachpath.motion.arm.limits import JointLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
@@ -35,7 +36,7 @@ class SetpointLog:
 
     Attributes:
         times: (n,) when each is due [s].
-        positions: (n, 6) of the joints [rad].
+        positions: (n, joints) of the joints [rad].
         on_path: (n,) whether the log has the tool on the path; None when it does not say.
         missing: number of setpoints that the numbering of the log skips.
         restarts: rows before which the arm came to rest by itself, on a way to rest that the log does not hold.
@@ -68,7 +69,12 @@ def check_log(log: SetpointLog, path: Curve | None, arm: Arm) -> LogCheck:
         log: at least 4 setpoints.
         path: that the tool follows [m], world; None to check only the limits.
         arm: whose setpoints they are.
+
+    Raises:
+        UnusableRecording: they are of an arm with another number of joints.
     """
+    if (count := log.positions.shape[1]) != arm.joint_count:
+        raise UnusableRecording(f"setpoints of {count} joints; the arm, {arm.identity}, has {arm.joint_count}")
     faults, measured = [], []
     period = float(np.median(np.diff(log.times)))
     measured.append(f"{len(log.times)} setpoints over {log.times[-1] - log.times[0]:.2f} s at {1 / period:.0f} Hz")
@@ -149,7 +155,7 @@ def _points(arm: Arm) -> tuple[tuple[str, ...], list[tuple[int, Vector]]]:
 
 
 def _use(positions: Array, order: int) -> Array:
-    """Return the differences of an order (n, 6) that end in each of the positions (n, 6), after a rest."""
+    """Return the differences of an order (n, joints) that end in each of the positions (n, joints), after a rest."""
     return np.abs(np.diff(np.concatenate([np.repeat(positions[:1], order, axis=0), positions]), order, axis=0))
 
 
@@ -200,7 +206,7 @@ def _distance(places: Array, points: Array) -> Array:
 
 
 def _tool(q: Array, arm: Arm) -> Array:
-    """Return the grasp point (n, 3) [m, world] at configurations (n, 6)."""
+    """Return the grasp point (n, 3) [m, world] at configurations (n, joints)."""
     return _point(q, arm, len(arm.limits.lower), _tool_in_flange(arm))
 
 
@@ -211,7 +217,7 @@ def _tool_in_flange(arm: Arm) -> Vector:
 
 
 def _point(q: Array, arm: Arm, number: int, place: Vector) -> Array:
-    """Return a point (n, 3) [m, world] of a link's frame at configurations (n, 6), link by link to the base."""
+    """Return a point (n, 3) [m, world] of a link's frame at configurations (n, joints), link by link to the base."""
     point = np.tile(place, (len(q), 1))
     if arm.model is not None:
         return _model_point(q, arm.model, number, point)

@@ -20,9 +20,9 @@ class TimeSeries:
 
     Attributes:
         times: (n,) since the first setpoint [s].
-        positions: (n, 6) of the joints [rad].
-        velocities: (n, 6), each the one of largest magnitude since the time before [rad/s].
-        torques: (n, 6), likewise [N m].
+        positions: (n, joints) of the joints [rad].
+        velocities: (n, joints), each the one of largest magnitude since the time before [rad/s].
+        torques: (n, joints), likewise [N m].
         tool: (n, 3) grasp point [m], world.
         object: (n, 3) carried object [m], world; empty when there is none.
         gripper_closed: (n,).
@@ -50,9 +50,10 @@ def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], poi
         points: at least 2.
         arm: that moved.
     """
+    states = [state for state in states if len(state.position) == arm.joint_count]  # what others sent is none of its
     count = len(states)
     if count == 0:
-        return _nothing()
+        return _nothing(arm.joint_count)
     groups = np.unique(np.linspace(0, count, min(points, count) + 1).astype(np.int64))[:-1]
     begin = setpoints[0].nominal_ns if setpoints else states[0].stamp_ns
     stamps = np.array([s.stamp_ns - begin for s in states], dtype=np.float64) / 1e9
@@ -78,11 +79,11 @@ def time_series(setpoints: Sequence[Setpoint], states: Sequence[JointState], poi
 
 
 def _largest(values: Array, groups: NDArray[np.int64]) -> Array:
-    """Return the value of largest magnitude in each group of rows (n, 6), with its sign."""
+    """Return the value of largest magnitude in each group of rows (n, joints), with its sign."""
     high, low = np.maximum.reduceat(values, groups), np.minimum.reduceat(values, groups)
     return np.where(high > -low, high, low)
 
 
-def _nothing() -> TimeSeries:
-    joints, place, value = np.empty((0, 6)), np.empty((0, 3)), np.empty(0)
+def _nothing(joint_count: int) -> TimeSeries:
+    joints, place, value = np.empty((0, joint_count)), np.empty((0, 3)), np.empty(0)
     return TimeSeries(value, joints, joints, joints, place, place, (), value, value)

@@ -59,12 +59,12 @@ class Robot:
         model: SHA-256 of an arm that was added (hex); empty for a published one.
         links: of a published arm, from the base to the wrist; empty for one that was added.
         joints: from the base to the flange.
-        lower: (6,) limits of the joints [rad].
-        upper: (6,) likewise.
-        speed: (6,) limits [rad/s].
-        acceleration: (6,) limits [rad/s^2].
-        jerk: (6,) limits [rad/s^3].
-        torque: (6,) limits [N m].
+        lower: (joints,) limits of the joints [rad].
+        upper: (joints,) likewise.
+        speed: (joints,) limits [rad/s].
+        acceleration: (joints,) limits [rad/s^2].
+        jerk: (joints,) limits [rad/s^3].
+        torque: (joints,) limits [N m].
         tool: its pose to the flange.
         tool_length: from where the gripper sits to the tool centre point [m]; 0: there is no gripper.
         tool_speed: limit of elbow, wrist and tool centre point [m/s]; None: no limit.

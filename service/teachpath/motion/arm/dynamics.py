@@ -42,7 +42,7 @@ class Dynamics:
         self._variation = TorqueVariation(self._moving_masses(), arm)
 
     def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
-        """Return the torques (n, 6) [N m] at configurations, velocities and accelerations (n, 6).
+        """Return the torques (n, joints) [N m] at configurations, velocities and accelerations (n, joints).
 
         Siciliano et al., Robotics, Springer 2009, eq. (7.42), with the motors' inertia, viscous and Coulomb friction.
         """
@@ -51,12 +51,12 @@ class Dynamics:
         return np.asarray(np.einsum("nij,nj->ni", inertia, acceleration) + gravity + coriolis + friction)
 
     def torque_bounds(self, q: Array, velocity: Array, acceleration: Array) -> Array:
-        """Return upper bounds (n, 6) [N m] of the torques that any sequence of commands can need on a path.
+        """Return upper bounds (n, joints) [N m] of the torques that any sequence of commands can need on a path.
 
         Args:
-            q: (n, 6) configurations on the path.
-            velocity: (n, 6) at full speed; the arm may be slower, forward or backward.
-            acceleration: (6,) limits, which may be used in any combination of signs.
+            q: (n, joints) configurations on the path.
+            velocity: (n, joints) at full speed; the arm may be slower, forward or backward.
+            acceleration: (joints,) limits, which may be used in any combination of signs.
         """
         inertia, gravity, coriolis = self._terms(q, velocity)
         # Gravity does not depend on the rate, Coriolis and centrifugal torques grow with its square.
@@ -64,12 +64,12 @@ class Dynamics:
         return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
 
     def motion_bounds(self, states: Array, turns: Array, period: float, stride: int = 1) -> Array:
-        """Return upper bounds (m, 6) [N m] of the torques at any moment of n periods, a row for each stride.
+        """Return upper bounds (m, joints) [N m] of the torques at any moment of n periods, a row for each stride.
 
         Args:
             states: (n + 1, 3, 6) position, velocity and acceleration of the joints at the ends of the periods, in each
                 of which the acceleration is linear in time.
-            turns: (n, 6) bounds of how far each joint turns in a period [rad].
+            turns: (n, joints) bounds of how far each joint turns in a period [rad].
             period: [s].
             stride: periods from one configuration whose torques are computed to the next; the more, the looser.
         """
@@ -87,7 +87,7 @@ class Dynamics:
         return np.asarray(largest + variation + friction, dtype=np.float64)
 
     def acceleration_share(self, q: Array, velocity: Array, acceleration: Array) -> float:
-        """Return the largest share of the acceleration limits (6,) at which `torque_bounds` keep the torque limits.
+        """Return the largest share of the acceleration limits (joints,) at which `torque_bounds` keep those of torque.
 
         At zero or less, the motors cannot even hold the arm.
         """
@@ -99,7 +99,7 @@ class Dynamics:
         model, data = self._model, self._data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
-        origins, found = link_frames(np.zeros(6), self._arm)[:, :3, 3], []
+        origins, found = link_frames(np.zeros(self._arm.joint_count), self._arm)[:, :3, 3], []
         for body in range(1, model.nbody):
             link = _link_of(model, body)
             if link:
@@ -111,20 +111,21 @@ class Dynamics:
         return found
 
     def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
-        """Return inertia matrices (n, 6, 6), and torques (n, 6) of gravity and of centrifugal and Coriolis forces."""
+        """Return inertia matrices (n, joints, joints), torques (n, joints) of gravity and of speed."""
         model, data = self._model, self._data
-        inertia, gravity, coriolis = np.empty((len(q), 6, 6)), np.empty_like(q), np.empty_like(q)
+        count = self._arm.joint_count
+        inertia, gravity, coriolis = np.empty((len(q), count, count)), np.empty_like(q), np.empty_like(q)
         whole = np.empty((model.nv, model.nv))
         for row, (at, speed) in enumerate(zip(q, velocity, strict=True)):
-            data.qpos[:6], data.qvel[:6] = at, 0.0
+            data.qpos[:count], data.qvel[:count] = at, 0.0
             mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
-            gravity[row] = data.qfrc_bias[:6]
-            data.qvel[:6] = speed
+            gravity[row] = data.qfrc_bias[:count]
+            data.qvel[:count] = speed
             mujoco.mj_fwdVelocity(model, data)
-            coriolis[row] = data.qfrc_bias[:6] - gravity[row]
+            coriolis[row] = data.qfrc_bias[:count] - gravity[row]
             mujoco.mj_fullM(model, data, whole)
-            inertia[row] = whole[:6, :6]
+            inertia[row] = whole[:count, :count]
         if self.carried_mass:
             translation, turning = jacobian(q, self._arm)[:, :3], _centripetal(q, velocity, self._arm)
             inertia += self.carried_mass * np.einsum("nki,nkj->nij", translation, translation)

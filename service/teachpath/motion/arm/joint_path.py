@@ -22,7 +22,7 @@ class JointPath:
     Attributes:
         nodes: (n,) strictly increasing parameters.
         lengths: (n,) arc length of the tool's path up to each node [m].
-        joints: (n, 6) configurations at the nodes [rad].
+        joints: (n, joints) configurations at the nodes [rad].
     """
 
     nodes: Array
@@ -36,7 +36,7 @@ class JointPath:
 
     @cached_property
     def spline(self) -> BSpline[np.float64]:
-        """The six joints and the arc length as functions of the parameter."""
+        """The joints and the arc length as functions of the parameter."""
         return make_interp_spline(self.nodes, np.column_stack([self.joints, self.lengths]), k=SPLINE_DEGREE)
 
     @cached_property
@@ -44,7 +44,7 @@ class JointPath:
         return (self.spline, *(self.spline.derivative(k) for k in (1, 2, 3)))
 
     def __call__(self, parameter: Array | float, order: int = 0) -> Array:
-        """Return (..., 7) the six joints and the arc length, or their derivative of `order` 1 to 3."""
+        """Return (..., joints + 1) the joints and the arc length, or their derivative of `order` 1 to 3."""
         at = np.clip(parameter, self.nodes[0], self.nodes[-1])
         return np.asarray(self._derivatives[order](at), dtype=np.float64)
 

@@ -18,7 +18,7 @@ JERK_PER_ACCELERATION: Final = 10.0  # 1/s
 
 @dataclass(frozen=True, eq=False)
 class MotionLimits:
-    """Largest speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joints: (6,) each; and of the tool.
+    """Largest speed [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of the joints: (joints,) each; and of the tool.
 
     Attributes:
         tool_speed: of elbow, wrist and tool centre point (`tool_speed`) [m/s]; infinite where none is set.
@@ -38,7 +38,7 @@ class MotionLimits:
 
 @dataclass(frozen=True, eq=False)
 class JointLimits:
-    """What the joints of an arm may do: (6,) each, read-only.
+    """What the joints of an arm may do: (joints,) each, read-only.
 
     Attributes:
         names: of the joints, as sentences call them.

@@ -61,7 +61,7 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
             *_arm(arm),
             *([_carried(scene.carried)] if scene.carried else []),
             "</worldbody>",
-            *([_grasp()] if scene.carried else []),
+            *([_grasp(arm)] if scene.carried else []),
             "<actuator>",
             *_motors(arm),
             "</actuator>",
@@ -100,7 +100,7 @@ def _arm(arm: Arm) -> list[str]:
     if arm.model is not None:
         solids = [_link_solid(solid) for solid in gripper_solids(arm)]
         return list(serial_bodies(arm.model, [*solids, *_gripper(arm)] if arm.has_gripper else []))
-    zero = link_frames(np.zeros(6), arm)
+    zero = link_frames(np.zeros(arm.joint_count), arm)
     lines: list[str] = []
     for i, link in enumerate(arm.links, start=1):
         relative = np.linalg.inv(zero[i - 1]) @ zero[i]
@@ -187,8 +187,9 @@ def _carried(shape: Shape) -> str:
     )
 
 
-def _grasp() -> str:
-    return f'<equality><weld name="{GRASP_WELD}" body1="link6" body2="{CARRIED_BODY}" active="false"/></equality>'
+def _grasp(arm: Arm) -> str:
+    hand = f"link{arm.joint_count}"
+    return f'<equality><weld name="{GRASP_WELD}" body1="{hand}" body2="{CARRIED_BODY}" active="false"/></equality>'
 
 
 def _motor(number: int, link: Link) -> str:

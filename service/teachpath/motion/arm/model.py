@@ -106,6 +106,11 @@ class Arm:
         return self.name if self.model is None else f"{self.name} ({self.model.hash[:12]})"
 
     @property
+    def joint_count(self) -> int:
+        """Number of its joints."""
+        return len(self.links) if self.model is None else len(self.model.links)
+
+    @property
     def has_gripper(self) -> bool:
         """Whether it has fingers that take an object."""
         return self.model is None or self.model.gripper_length > 0.0

@@ -20,8 +20,9 @@ kernel: Callable[[F], F] = compiled(error_model="numpy")  # which lets a divisio
 
 @kernel
 def approach_poses(
-    poses: Array, seeds: Array, turns: Array, axes: Array, anchors: Array, tool: Array, iterations: int, residual: float
-) -> Array:
+    poses: Array, seeds: Array, turns: Array, axes: Array, anchors: Array, tool: Array, iterations: int,
+    residual: float, held: int,
+) -> Array:  # fmt: skip
     """Return the configurations (n, joints) [rad] nearest to poses that Newton's method finds from seeds.
 
     Args:
@@ -34,30 +35,41 @@ def approach_poses(
         tool: (4, 4) to the last link from the tool.
         iterations: at most.
         residual: distance from the pose [m and rad] at which no more are made.
+        held: number of a joint that keeps its angle; -1: none does.
     """
     found = seeds.copy()
-    count = seeds.shape[1]
-    error, jacobian, step = np.empty(6), np.empty((6, count)), np.empty(count)
-    q, frames, reached = np.empty(count), np.empty((count, 4, 4)), np.empty((4, 4))
     for row in range(len(seeds)):
-        least = np.inf
-        for joint in range(count):
-            q[joint] = seeds[row, joint]
-        for _ in range(iterations + 1):
-            _place_links(q, turns, frames)
-            _write_product(frames[count - 1], tool, reached)
-            off = _write_error(poses[row], reached, error)
-            if off < least:
-                least = off
-                for joint in range(count):
-                    found[row, joint] = q[joint]
-            if off <= residual:
-                break
-            _write_jacobian(frames, axes, anchors, reached, jacobian)
-            _write_step(jacobian, error, step)
-            for joint in range(count):
-                q[joint] += step[joint]
+        approach_pose(poses[row], found[row], turns, axes, anchors, tool, iterations, residual, held)
     return found
+
+
+@kernel
+def approach_pose(
+    pose: Array, q: Array, turns: Array, axes: Array, anchors: Array, tool: Array, iterations: int, residual: float,
+    held: int,
+) -> float:  # fmt: skip
+    """Bring a configuration (joints,) as near to a pose (4, 4) as `approach_poses` does; return its distance."""
+    count, least = len(q), np.inf
+    error, jacobian, step = np.empty(6), np.empty((6, count)), np.empty(count)
+    trial, frames, reached = q.copy(), np.empty((count, 4, 4)), np.empty((4, 4))
+    for _ in range(iterations + 1):
+        _place_links(trial, turns, frames)
+        _write_product(frames[count - 1], tool, reached)
+        off = _write_error(pose, reached, error)
+        if off < least:
+            least = off
+            for joint in range(count):
+                q[joint] = trial[joint]
+        if off <= residual:
+            break
+        _write_jacobian(frames, axes, anchors, reached, jacobian)
+        if held >= 0:
+            for i in range(6):
+                jacobian[i, held] = 0.0
+        _write_step(jacobian, error, step)
+        for joint in range(count):
+            trial[joint] += step[joint]
+    return least
 
 
 @kernel

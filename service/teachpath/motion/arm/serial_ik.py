@@ -24,7 +24,9 @@ ITERATIONS: Final = 60  # from a random seed
 SAME: Final = 1e-4  # rad, within which two solutions are one
 
 
-def solve_near(poses: Array, seeds: Array, arm: SerialArm, iterations: int = ITERATIONS) -> tuple[Array, Array]:
+def solve_near(
+    poses: Array, seeds: Array, arm: SerialArm, iterations: int = ITERATIONS, *, held: int | None = None
+) -> tuple[Array, Array]:
     """Bring the tool to poses from seeds, by damped steps of Newton's method.
 
     Args:
@@ -32,11 +34,12 @@ def solve_near(poses: Array, seeds: Array, arm: SerialArm, iterations: int = ITE
         seeds: (n, joints) configurations to begin at [rad].
         arm: whose tool it is.
         iterations: at most.
+        held: number of a joint that keeps its angle; None: none does.
 
     Returns:
         (n, joints) configurations, and (n,) how far each leaves the tool from its pose: the larger of [m] and [rad].
     """
-    q = approach_poses(poses, seeds, *_geometry(arm), iterations, RESIDUAL)
+    q = approach_poses(poses, seeds, *geometry(arm), iterations, RESIDUAL, -1 if held is None else held)
     error = pose_errors(poses, q, arm)
     return q, np.maximum(np.linalg.norm(error[:, :3], axis=1), np.linalg.norm(error[:, 3:], axis=1))
 
@@ -53,10 +56,10 @@ def follow_poses(poses: Array, first: Array, arm: SerialArm, iterations: int = I
     Returns:
         (n, m, joints) configurations.
     """
-    geometry, rows = _geometry(arm), [first]
+    given, rows = geometry(arm), [first]
     for number in range(1, poses.shape[1]):
         at = np.ascontiguousarray(poses[:, number])
-        rows.append(approach_poses(at, rows[-1], *geometry, iterations, RESIDUAL))
+        rows.append(approach_poses(at, rows[-1], *given, iterations, RESIDUAL, -1))
     return np.stack(rows, axis=1)
 
 
@@ -95,7 +98,7 @@ def limits_of(arm: SerialArm) -> tuple[Array, Array]:
     )
 
 
-def _geometry(arm: SerialArm) -> tuple[Array, Array, Array, Array]:
+def geometry(arm: SerialArm) -> tuple[Array, Array, Array, Array]:
     """Return turns, axes, anchors and tool of an arm, as `approach_poses` takes them."""
     turns = np.array([link_terms(link) for link in arm.links])
     turns[0] = pose_matrix(arm.base) @ turns[0]

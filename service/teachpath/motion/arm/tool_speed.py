@@ -33,12 +33,12 @@ def point_names(arm: Arm) -> tuple[str, ...]:
 
 
 def monitored_points(q: Array, arm: Arm) -> Array:
-    """Return the positions (..., 4, 3) [m, world] of the points at configurations (..., 6)."""
+    """Return the positions (..., 4, 3) [m, world] of the points at configurations (..., joints)."""
     return _points(link_frames(q, arm), arm)
 
 
 def point_speeds(q: Array, velocity: Array, arm: Arm) -> Array:
-    """Return the speeds (n, 4) [m/s] of the points at configurations and joint velocities (n, 6)."""
+    """Return the speeds (n, 4) [m/s] of the points at configurations and joint velocities (n, joints)."""
     frames = link_frames(q, arm)
     if arm.model is None:
         axes, anchors, last = frames[:, :6, :3, 2], frames[:, :6, :3, 3], np.array(_LINKS) - 1
@@ -59,7 +59,7 @@ def speed_bounds(motion: Array, step: float, arm: Arm) -> Array:
     on that line it is nowhere larger than at its ends. |f''| of a chain of rotations is bounded by the joints' rates.
 
     Args:
-        motion: (n, 4, 6) joints and three derivatives at even samples.
+        motion: (n, 4, joints) joints and three derivatives at even samples.
         step: between two samples.
     """
     rate, second, third = (np.abs(motion[:, order]).sum(axis=1) for order in (1, 2, 3))
@@ -70,8 +70,8 @@ def cubic_speed_bound(states: Array, jerks: Array, step: float, arm: Arm) -> flo
     """Return an upper bound [m/s] of the points' speeds on a motion whose jerk is constant in every step.
 
     Args:
-        states: (n + 1, 3, 6) joints, velocities and accelerations at the ends of the steps.
-        jerks: (n, 6) sizes of the jerks in the steps [rad/s^3].
+        states: (n + 1, 3, joints) joints, velocities and accelerations at the ends of the steps.
+        jerks: (n, joints) sizes of the jerks in the steps [rad/s^3].
         step: [s].
     """
     third, second = jerks.sum(axis=1).max(), np.abs(states[:, 2]).sum(axis=1).max()
@@ -84,12 +84,12 @@ def line_speed_bound(start: Array, direction: Array, turn: float, arm: Arm) -> f
     """Return an upper bound of the points' speeds [m] on a straight line of the joints, per unit of its parameter.
 
     Args:
-        start: configuration (6,) [rad].
-        direction: (6,) of the joints by the parameter.
+        start: configuration (joints,) [rad].
+        direction: (joints,) of the joints by the parameter.
         turn: length of the line in its parameter.
     """
     count = int(np.ceil(turn / LINE_STEP)) + 1
-    motion = np.zeros((count, 4, 6))
+    motion = np.zeros((count, 4, len(start)))
     motion[:, 0] = start + np.linspace(0.0, turn, count)[:, None] * direction
     motion[:, 1] = direction
     return float(speed_bounds(motion, turn / (count - 1), arm).max())
@@ -99,8 +99,8 @@ def squared_rate_ceiling(q: Array, slope: Array, tool_speed: float, arm: Arm) ->
     """Return the largest square (n,) of a path parameter's rate at which the points keep a speed [m/s].
 
     Args:
-        q: (n, 6) configurations on the path.
-        slope: (n, 6) their derivative by the parameter.
+        q: (n, joints) configurations on the path.
+        slope: (n, joints) their derivative by the parameter.
     """
     if np.isinf(tool_speed):
         return np.full(len(q), np.inf)
@@ -108,8 +108,8 @@ def squared_rate_ceiling(q: Array, slope: Array, tool_speed: float, arm: Arm) ->
 
 
 def difference_speeds(setpoints: Array, rate: float, arm: Arm) -> Array:
-    """Return the speeds (n - 1, 4) [m/s] of the points by differences of setpoints (n, 6) at a rate [Hz]."""
-    moves = np.diff(monitored_points(setpoints[:, :6], arm), axis=0)
+    """Return the speeds (n - 1, 4) [m/s] of the points by differences of setpoints (n, joints) at a rate [Hz]."""
+    moves = np.diff(monitored_points(setpoints[:, : arm.joint_count], arm), axis=0)
     return np.asarray(np.linalg.norm(moves, axis=2) * rate)
 
 

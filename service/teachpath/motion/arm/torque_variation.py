@@ -27,7 +27,7 @@ class MovingMass:
     """A body that the arm moves.
 
     Attributes:
-        link: to which it is fixed, 1 to 6.
+        link: to which it is fixed, from 1.
         radius: of its centre of mass from the origin of that link's frame [m].
         mass: [kg].
         inertia: its largest moment of inertia about its centre of mass [kg m^2].
@@ -43,20 +43,21 @@ class TorqueVariation:
     """Bounds for one arm with all that it carries."""
 
     def __init__(self, masses: Sequence[MovingMass], arm: Arm) -> None:
-        self._gravity = np.zeros((6, 6))  # [N m/rad]
-        self._first = np.zeros((6, 6, 6))  # of the inertia matrix [kg m^2/rad]
-        self._second = np.zeros((6, 6, 6, 6))
+        count = arm.joint_count
+        self._gravity = np.zeros((count, count))  # [N m/rad]
+        self._first = np.zeros((count,) * 3)  # of the inertia matrix [kg m^2/rad]
+        self._second = np.zeros((count,) * 4)
         for body in masses:
             self._add(body, _lever_arms(body, arm))
 
     def bound(self, turns: Array, speeds: Array, speed_changes: Array, accelerations: Array) -> Array:
-        """Return by how much torques without friction change at most (6,) [N m], the accelerations being the same.
+        """Return by how much torques without friction change at most (joints,) [N m], the accelerations being the same.
 
         Args:
-            turns: (6,) by how much the joints turn at most [rad].
-            speeds: (6,) largest speeds at the begin [rad/s].
-            speed_changes: (6,) by which they change at most [rad/s].
-            accelerations: (6,) largest ones [rad/s^2].
+            turns: (joints,) by how much the joints turn at most [rad].
+            speeds: (joints,) largest speeds at the begin [rad/s].
+            speed_changes: (joints,) by which they change at most [rad/s].
+            accelerations: (joints,) largest ones [rad/s^2].
         """
         shift = self._gravity @ turns + np.einsum("ilj,l,j->i", self._first, accelerations, turns)
         # Torques by speeds: the sum over j and k of (dM_ij / dq_k - dM_jk / dq_i / 2) v_j v_k.
@@ -81,8 +82,8 @@ class TorqueVariation:
 
 
 def _lever_arms(body: MovingMass, arm: Arm) -> Array:
-    """Return bounds (6,) on the distance of the body's centre of mass to each joint's axis, wherever it is [m]."""
-    lever_arms, far = np.zeros(6), body.radius
+    """Return bounds (joints,) on the distance of the body's centre of mass to each joint's axis, wherever it is [m]."""
+    lever_arms, far = np.zeros(arm.joint_count), body.radius
     if arm.model is not None:
         radii = np.zeros(body.link)
         radii[-1] = body.radius

@@ -112,7 +112,7 @@ class CollisionModel:
         `support_distances`).
 
         Args:
-            q: (n, 6) configurations [rad].
+            q: (n, joints) configurations [rad].
             load: where the carried object is; None when there is none.
             gripper_open: whether the fingers are apart.
         """
@@ -128,16 +128,17 @@ class CollisionModel:
         return self._clearances(q, _Pairs([(finger, self._object) for finger in fingers]), load, True)
 
     def lever_arms(self, load: Load | None = None) -> Array:
-        """Return bounds (6,) [m] on the distance of any moving point to each joint's axis, in any configuration."""
-        self._place(np.zeros(6), None)
-        origins = link_frames(np.zeros(6), self.arm)[:, :3, 3]
-        radius = np.zeros(7)
+        """Return bounds (joints,) [m] on the distance of any moving point to each joint's axis, wherever the arm is."""
+        zero = np.zeros(self.arm.joint_count)
+        self._place(zero, None)
+        origins = link_frames(zero, self.arm)[:, :3, 3]
+        radius = np.zeros(len(origins))
         for geom, part in self._solids.items():
             off = np.linalg.norm(self._data.geom_xpos[geom] - origins[part.link]) + np.linalg.norm(part.opening_offset)
             radius[part.link] = max(radius[part.link], off + self._model.geom_rbound[geom])
         if load is not None and load.grasp_pose is not None:
             off = np.linalg.norm((self.arm.tool_matrix @ load.grasp_pose)[:3, 3])
-            radius[6] = max(radius[6], off + self._model.geom_rbound[self._object])
+            radius[-1] = max(radius[-1], off + self._model.geom_rbound[self._object])
         if self.arm.model is not None:
             return serial_lever_arms(radius[1:], self.arm.model)
         lever_arms, far = np.zeros(6), 0.0  # far: from the frame behind a joint to any point that it moves
@@ -167,7 +168,9 @@ class CollisionModel:
         if load is not None and load.grasp_pose is not None:
             around = [(self._object, other) for other in self._obstacles + self._zones]
             pairs.bodies.extend(pair for pair in around if pair not in supports.bodies)
-            near = 4 if self.arm.model is None else 5  # the last link that is far from all that the fingers can hold
+            near = self.arm.joint_count - (
+                2 if self.arm.model is None else 1
+            )  # the last link that is far from all that the fingers can hold
             pairs.bodies.extend((self._object, geom) for geom, part in self._solids.items() if part.link <= near)
             sides = [(self._object, boundary) for boundary in self._boundaries]
             pairs.boundaries.extend(pair for pair in sides if pair not in supports.boundaries)
@@ -190,7 +193,7 @@ class CollisionModel:
         carried = self.scene.carried
         if carried is None:
             return _Pairs()
-        places, turns = self._geom_poses(np.zeros((1, 6)), [shape_pose(carried)])
+        places, turns = self._geom_poses(np.zeros((1, self.arm.joint_count)), [shape_pose(carried)])
         floor = (self._object, self._boundaries[0])
         on_floor = boundary_distances([floor], self._extents, places, turns)[0, 0] <= touching
         near = [other for other in self._obstacles if self._distance(self._object, other, MAX_DISTANCE) <= touching]
@@ -209,10 +212,11 @@ class CollisionModel:
 
     def _place(self, q: Array, pose: Array | None) -> None:
         data = self._data
-        data.qpos[:6] = q
+        count = len(q)
+        data.qpos[:count] = q
         if pose is not None:
-            data.qpos[6:9] = pose[:3, 3]
-            mujoco.mju_mat2Quat(data.qpos[9:13], np.ascontiguousarray(pose[:3, :3]).ravel())
+            data.qpos[count : count + 3] = pose[:3, 3]
+            mujoco.mju_mat2Quat(data.qpos[count + 3 : count + 7], np.ascontiguousarray(pose[:3, :3]).ravel())
         mujoco.mj_kinematics(self._model, data)
 
     def _distance(self, one: int | np.int64, two: int | np.int64, furthest: float) -> float:
@@ -287,7 +291,7 @@ class CollisionModel:
 
 
 def grasped_load(model: CollisionModel, start: Array) -> Load | None:
-    """Return the load after the scene's object was grasped at configuration `start` (6,); None without an object."""
+    """Return the load after the scene's object was grasped at configuration `start` (joints,); None without one."""
     carried = model.scene.carried
     if carried is None:
         return None

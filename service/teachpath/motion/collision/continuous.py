@@ -34,7 +34,7 @@ class ContinuousCheck:
     Attributes:
         parameters: (k,) increasing.
         motion_bounds: (k,) upper bound of the path length [m] of any point up to each parameter; linear in between.
-        configurations: returns configurations (m, 6) at parameters (m,).
+        configurations: returns configurations (m, joints) at parameters (m,).
     """
 
     parameters: Array
@@ -47,18 +47,18 @@ class ContinuousCheck:
 
         Args:
             path: of the joints.
-            lever_arms: (6,) of the joints [m] (see `CollisionModel.lever_arms`).
+            lever_arms: (joints,) of the joints [m] (see `CollisionModel.lever_arms`).
         """
         slope = path.spline.derivative()
         knots = np.unique(slope.t)
         last = np.searchsorted(slope.t, knots[:-1], side="right") - 1  # last coefficient of each span
-        active = np.abs(slope.c[last[:, None] - np.arange(slope.k + 1), :6]).max(axis=1)
+        active = np.abs(slope.c[last[:, None] - np.arange(slope.k + 1), :-1]).max(axis=1)
         bounds = np.concatenate([[0.0], np.cumsum(np.diff(knots) * (active @ lever_arms))])
-        return ContinuousCheck(knots, bounds, lambda parameters: path(parameters)[:, :6])
+        return ContinuousCheck(knots, bounds, lambda parameters: path(parameters)[:, :-1])
 
     @staticmethod
     def along_lines(waypoints: Array, lever_arms: Array) -> ContinuousCheck:
-        """Check straight lines of the joints between configurations `waypoints` (k, 6)."""
+        """Check straight lines of the joints between configurations `waypoints` (k, joints)."""
         bounds = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(waypoints, axis=0)) @ lever_arms)])
         index = np.arange(len(waypoints), dtype=np.float64)
         return ContinuousCheck(
@@ -80,7 +80,7 @@ def prove_distance(check: ContinuousCheck, measure: Measure, required: float) ->
 
     Args:
         check: the motion.
-        measure: returns the distances at configurations (m, 6).
+        measure: returns the distances at configurations (m, joints).
         required: distance [m] that should be kept. As soon as a smaller one is measured, nothing more is proved.
     """
     count = max(1, int(np.ceil(check.motion_bounds[-1] / INITIAL_STEP)))

@@ -43,7 +43,7 @@ class WayToRest:
     """How the arm comes to rest from the newest setpoint without another one.
 
     Attributes:
-        states: (n, 3, 6) joints, velocity, acceleration a control period apart, the first one ahead; empty at rest.
+        states: (n, 3, joints) joints, velocity, acceleration a control period apart, the first ahead; empty at rest.
         tau: plan time at which it rests [s].
     """
 
@@ -73,10 +73,12 @@ class Governor:
         self._ramp_periods, self._ramp_end, self._done = 1, 0.0, 1
         self._finder = RampFinder(trajectory, dt)
         self._stop_periods: int | None = None  # of the one from the present state, once that was searched for
-        self._motion = np.zeros((3, 7))
+        self._motion = np.zeros((3, trajectory.table.shape[2]))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
-        self._sent = np.zeros((PHASES, 3, 6))  # newest setpoint and differences (see `ramp_checks.advance`)
-        self._sent[:, 0] = self._motion[0, :6]
+        self._sent = np.zeros(
+            (PHASES, 3, trajectory.table.shape[2] - 1)
+        )  # newest setpoint and differences (see `ramp_checks.advance`)
+        self._sent[:, 0] = self._motion[0, :-1]
 
     @property
     def override(self) -> float:
@@ -95,12 +97,12 @@ class Governor:
 
     @property
     def motion(self) -> Array:
-        """The present nominal motion (3, 7): joints and length, their velocity and acceleration."""
+        """The present nominal motion (3, joints + 1): joints and length, their velocity and acceleration."""
         return self._motion
 
     @property
     def sent(self) -> Array:
-        """The newest setpoint and its differences (PHASES, 3, 6), as `ramp_checks.advance` keeps them."""
+        """The newest setpoint and its differences (PHASES, 3, joints), as `ramp_checks.advance` keeps them."""
         return self._sent.copy()
 
     @property
@@ -108,7 +110,7 @@ class Governor:
         """How far the trajectory is done now."""
         tau, rate, slope = self._state
         standing = bool(rate == 0.0 and slope == 0.0)
-        return PathProgress(float(self._motion[0, 6]), float(rate), standing, standing and bool(tau >= self._end))
+        return PathProgress(float(self._motion[0, -1]), float(rate), standing, standing and bool(tau >= self._end))
 
     def set_override(self, share: float) -> None:
         """Go at `share` of the full speed from now on, clipped to 0 to 1; a share under `MIN_OVERRIDE` holds."""
@@ -135,7 +137,7 @@ class Governor:
         self._rest(min(max(tau, 0.0), self._end))
         kernels.evaluate_motion(self._table, self._step, self._state, self._motion)
         self._sent[:] = 0.0
-        self._sent[:, 0] = self._motion[0, :6]
+        self._sent[:, 0] = self._motion[0, :-1]
         self._held, self._reversing = True, False
 
     def restart_at(self, tau: float, *, held: bool) -> None:
@@ -188,26 +190,26 @@ class Governor:
         trajectory, where the motion rests.
         """
         if self.progress.at_rest:
-            return WayToRest(np.empty((0, 3, 6)), self.tau)
+            return WayToRest(np.empty((0, *self._sent.shape[1:])), self.tau)
         if self._ramp_end == 0.0:
             return self._sampled(self._ramp_periods - self._done, 0)
         if periods := self._present_stop():
             return self._sampled(0, periods)
         for lead in (round(seconds / self._dt) for seconds in STOP_LEADS):
             sent, state = self._sent.copy(), self._state.copy()
-            self._follow(lead, sent, state, np.empty((lead, 3, 7)))
+            self._follow(lead, sent, state, np.empty((lead, *self._motion.shape)))
             if state[1] == 0.0 or (periods := self._finder.find_stop(state, sent)):
                 return self._sampled(lead, periods)
         return self._sampled(MAX_RAMP_PERIODS, 0)  # nothing but the end of the trajectory is one
 
     def _sampled(self, lead: int, periods: int) -> WayToRest:
         """Return the way to rest along the ramp for some periods, and then along the newest stop for some."""
-        sent, state, motions = self._sent.copy(), self._state.copy(), np.empty((lead + periods, 3, 7))
+        sent, state, motions = self._sent.copy(), self._state.copy(), np.empty((lead + periods, *self._motion.shape))
         count = self._follow(lead, sent, state, motions[:lead])
         if periods:
             stop = (self._finder.stop, periods, 0, self._dt)
             count += ramp_following.follow(self._table, self._step, *stop, sent, state, motions[lead:])
-        return WayToRest(motions[:count, :, :6], min(max(float(state[0]), 0.0), self._end))
+        return WayToRest(motions[:count, :, :-1], min(max(float(state[0]), 0.0), self._end))
 
     def _follow(self, lead: int, sent: Array, state: Array, motions: Array) -> int:
         ramp = (self._ramp, self._ramp_periods, self._done, self._dt)
@@ -246,8 +248,8 @@ class Governor:
 
 def warm_up(dt: float, arm: Arm) -> None:
     """Compile the kernels, or load them from disk, so that the first motion does not wait for them."""
-    turn = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
-    governor = Governor(straight_move(np.zeros(6), turn, arm.limits.motion, arm=arm, margins=(0.5, 0.5, 0.5)), dt)
+    still, turn = np.zeros(arm.joint_count), 0.01 * (np.arange(arm.joint_count) == 0)
+    governor = Governor(straight_move(still, turn, arm.limits.motion, arm=arm, margins=(0.5, 0.5, 0.5)), dt)
     for act in (governor.step, governor.way_to_rest, governor.hold, governor.step, governor.reverse, governor.step):
         act()
 

@@ -42,12 +42,12 @@ def preview_motion(
     which = np.clip(np.searchsorted(begins, times, side="right") - 1, 0, len(parts) - 1)
     rows = _rows(parts, begins, times, which, np.array(settings.home))
     taught = next(index for index, part in enumerate(parts) if part.is_path)
-    share = np.clip(rows[:, 6] / plan.lengths[-1], 0.0, 1.0)  # the trajectory ends within rounding of the length
-    positions, orientations = _object(plan, arm, rows[:, :6], which - taught)
+    share = np.clip(rows[:, -1] / plan.lengths[-1], 0.0, 1.0)  # the trajectory ends within rounding of the length
+    positions, orientations = _object(plan, arm, rows[:, :-1], which - taught)
     return MotionPreview(
         plan=plan.id,
         times=times,
-        joints=rows[:, :6],
+        joints=rows[:, :-1],
         progress=np.where(which == taught, share, np.where(which < taught, 0.0, 1.0)),
         gripper_closed=tuple(parts[index].gripper_closed for index in which),
         object_position=positions,
@@ -60,8 +60,8 @@ def preview_motion(
 
 
 def _rows(parts: Sequence[Segment], begins: Array, times: Array, which: NDArray[np.intp], home: Array) -> Array:
-    """Return joints and length (n, 7) at `times` (n,), each in the segment of the index `which` (n,)."""
-    rows = np.zeros((len(times), 7))
+    """Return joints and length (n, joints + 1) at `times` (n,), each in the segment of the index `which` (n,)."""
+    rows = np.zeros((len(times), len(home) + 1))
     here = np.append(home, 0.0)
     for index, (part, begin) in enumerate(zip(parts, begins[:-1], strict=True)):
         mine = which == index

@@ -41,7 +41,7 @@ class MotionProgram(Protocol):
 
     @property
     def current_q(self) -> Array:
-        """Configuration (6,) of the newest setpoint [rad]."""
+        """Configuration (joints,) of the newest setpoint [rad]."""
 
     @property
     def override(self) -> float:
@@ -109,7 +109,7 @@ class MotionProgram(Protocol):
         """
 
     def plan_return(self, start_q: Array) -> Detour:
-        """Plan the way back to `current_q` from the configuration `start_q` (6,), where the arm rests.
+        """Plan the way back to `current_q` from the configuration `start_q` (joints,), where the arm rests.
 
         Raises:
             Conflict: the program has no way back.

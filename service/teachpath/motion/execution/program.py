@@ -24,7 +24,7 @@ class PlanProgram:
 
     Args:
         plan: certified; checked again here.
-        start_q: (6,) where the arm rests [rad].
+        start_q: (joints,) where the arm rests [rad].
         settings: as for planning.
         arm: that the plan is for.
         override: share of the full speed, 0 to 1.
@@ -66,7 +66,7 @@ class PlanProgram:
         self.waiting: bool = False
         self._period, self._elapsed = period, 0.0
         self.arc_length: float = 0.0
-        self.state: MotionState = MotionState(np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6), False)
+        self.state: MotionState = MotionState(q := np.array(start_q, dtype=np.float64), 0.0 * q, 0.0 * q, False)
         self._segment: Segment | None = None
         self._governor: Governor | None = None  # of the segment
         self._detour: Detour | None = None
@@ -112,7 +112,7 @@ class PlanProgram:
 
     @property
     def current_q(self) -> Array:
-        """Configuration (6,) of the newest setpoint [rad]."""
+        """Configuration (joints,) of the newest setpoint [rad]."""
         return self.state.position
 
     @property
@@ -191,7 +191,7 @@ class PlanProgram:
         return Detour.of_step(segment.trajectory, begin, min(max(goal, 0.0), self._length), 1.0 / self._period)
 
     def plan_return(self, start_q: Array) -> Detour:
-        """Plan the way back from `start_q` (6,) to where the arm was held; raises PathRefused when it is not free."""
+        """Plan the way back from `start_q` (joints,) to where it was held; raises PathRefused if it is not free."""
         assert self._segment is not None
         way = plan_return_path(self._plan, self._segment, start_q, self.current_q, self._settings, self._arm)
         return Detour("on the way back to the path", tuple(way))
@@ -220,7 +220,7 @@ class PlanProgram:
         if on_path:
             # The table of the whole path ends a last bit away from its length; that of a step ends where the step does.
             self.arc_length = self._length if state.finished and self._detour is None else state.s
-        position, velocity, acceleration = governor.motion[:, :6].copy()
+        position, velocity, acceleration = governor.motion[:, :-1].copy()
         self.state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
         if state.finished and not self.held:
             self._finish()
@@ -230,9 +230,9 @@ class PlanProgram:
         """Do nothing: a plan holds nothing that must be freed."""
 
     def way_to_rest(self) -> tuple[Array, RestPoint]:
-        """Return the states (n, 3, 6) of the way to rest from the newest setpoint, and where it ends."""
+        """Return the states (n, 3, joints) of the way to rest from the newest setpoint, and where it ends."""
         active = self._active_governor
-        way = active.way_to_rest() if active is not None else WayToRest(np.empty((0, 3, 6)), 0.0)
+        way = active.way_to_rest() if active is not None else WayToRest(np.empty((0, 3, len(self.state.position))), 0.0)
         end = way.states[-1, 0] if len(way.states) else self.state.position
         taus = tuple((governor, way.tau if governor is active else governor.tau) for governor in self._governors())
         return way.states, RestPoint(end, self._next - 1, self._detour, taus, self._elapsed, self.state.on_path)
@@ -256,7 +256,7 @@ class PlanProgram:
         self._detour_governors = governors
         self.state = replace(self.state, position=point.position, on_path=point.on_path)
         if point.on_path and (active := self._active_governor) is not None:
-            self.arc_length = float(active.motion[0, 6])
+            self.arc_length = float(active.motion[0, -1])
         if steps and governors and governors[0].progress.finished:
             self._finish()
             return ""
@@ -293,7 +293,7 @@ class PlanProgram:
         self._elapsed, self._governor = 0.0, None
         if self._segment is None:
             return
-        self.state = MotionState(self.state.position, np.zeros(6), np.zeros(6), self._segment.gripper_closed)
+        self.state = MotionState(q := self.state.position, 0.0 * q, 0.0 * q, self._segment.gripper_closed)
         if self._segment.trajectory is not None:
             self._governor = self._governor_of(self._segment.trajectory)
             if self._held:

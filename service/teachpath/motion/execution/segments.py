@@ -26,7 +26,7 @@ MIN_MOVE: Final = 1e-9  # [rad] below which there is nothing to move
 
 @dataclass(frozen=True, eq=False)
 class MotionState:
-    """The arm's nominal motion at one instant: (6,) in rad, rad/s, rad/s^2."""
+    """The arm's nominal motion at one instant: (joints,) in rad, rad/s, rad/s^2."""
 
     position: Array
     velocity: Array
@@ -75,7 +75,7 @@ class RestPoint:
     """Where an arm rests that has followed the way to rest of one setpoint.
 
     Attributes:
-        position: (6,) [rad].
+        position: (joints,) [rad].
         segment: index of the segment of that setpoint.
         detour: that was followed, if any.
         governors: of the detour and of the segment in order, with their plan times [s]; that of the one which moves is
@@ -113,7 +113,7 @@ class Segment:
 
 
 def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm, dwell: float) -> list[Segment]:
-    """Return the segments of an execution that begins in the configuration `start_q` (6,).
+    """Return the segments of an execution that begins in the configuration `start_q` (joints,).
 
     Raises:
         PathRefused: the way from there to the start of the path, or home from its goal, is not free, or the motors are
@@ -147,7 +147,7 @@ def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm
 def plan_return_path(
     plan: Plan, segment: Segment, start_q: Array, goal_q: Array, settings: MotionSettings, arm: Arm
 ) -> list[TimedTrajectory]:
-    """Plan a slow way from `start_q` (6,) back to `goal_q` (6,), where the arm was held in a segment.
+    """Plan a slow way from `start_q` (joints,) back to `goal_q` (joints,), where the arm was held in a segment.
 
     Raises:
         PathRefused: the way is not free, or the motors are too weak for it.

@@ -98,7 +98,7 @@ class TeleopFollower:
         pose = tool_pose(start_q, model.arm)
         self._branch = branch_at(start_q, pose, model.arm)
         self._orientation = pose[:3, :3]  # (3, 3) of the tool where it rests, or where the present motion ends
-        self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), np.zeros(6), np.zeros(6))
+        self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), *np.zeros((2, len(start_q))))
         self._motion: ToolMotion | None = None
         self._sample = -1  # of the present motion; -1 before its first
         self._cycle = 0
@@ -184,12 +184,12 @@ class TeleopFollower:
         return self._state
 
     def way_to_rest(self) -> Array:
-        """Return the states (n, 3, 6) that are left of the motion that is followed; it ends at rest."""
-        return self._motion.states[self._sample + 1 :] if self._motion else np.empty((0, 3, 6))
+        """Return the states (n, 3, joints) that are left of the motion that is followed; it ends at rest."""
+        return self._motion.states[self._sample + 1 :] if self._motion else np.empty((0, 3, len(self._state[0])))
 
     def rest_at(self, position: Array) -> None:
         """Stand at a configuration (6,) at once; only for an arm that rests there already."""
-        self._state = (position, np.zeros(6), np.zeros(6))
+        self._state = (position, *np.zeros((2, len(position))))
         self._orientation = tool_pose(position, self._model.arm)[:3, :3]
         self._motion = self._planned = self._planning = None
 

@@ -17,10 +17,11 @@ from teachpath.motion.arm.kinematics import BRANCH_NAMES, describe_reach, invers
 from teachpath.motion.arm.limits import JointLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.paths.numeric_branches import follow_near, track_solutions
+from teachpath.motion.arm.serial_ik import nearest_turn
+from teachpath.motion.paths.numeric_branches import follow_near
+from teachpath.motion.paths.redundancy import Redundancy
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import SerialArm
 
 MAX_JOINT_STEP: Final = 0.35  # rad between two nodes; a larger one is a jump, at which the branch ends
 
@@ -32,11 +33,12 @@ class IkBranch:
     Attributes:
         arm: whose branch it is.
         index: of shoulder, elbow and wrist in `BRANCH_NAMES`; of a user's model, of the solution at the path's start.
-        joints: (n, 6) configurations [rad], before any roll of the tool where joint 6 alone rolls it (`rolled_poses`);
-            out of reach, the arm is stretched or folded towards the pose.
+        joints: (n, joints) configurations [rad], before any roll of the tool where joint 6 alone rolls it (see
+            `rolled_poses`); out of reach, the arm is stretched or folded towards the pose.
         reach_excess: (n,) how far the wrist centre is out of reach [m]; at most 0 within reach.
         beyond_outer_reach: (n,) True where it is too far away, False where it is too near to the arm's axis.
         jumps: (n,) True where a joint jumps between a node and the next.
+        redundancy: how the joint moves that an arm with seven joints has left; None: the arm has none left.
     """
 
     arm: Arm
@@ -45,6 +47,7 @@ class IkBranch:
     reach_excess: Array
     beyond_outer_reach: NDArray[np.bool_]
     jumps: NDArray[np.bool_]
+    redundancy: Redundancy | None = None
 
     @property
     def name(self) -> str:
@@ -89,8 +92,8 @@ class Candidate:
         description: shoulder, elbow, wrist and tool roll in words.
         branch: of inverse kinematics.
         roll: of the tool about its own axis.
-        joints: (n, 6) continuous configurations [rad].
-        limit_excess: (n, 6) by how much each joint is beyond its limit [rad]; negative within.
+        joints: (n, joints) continuous configurations [rad].
+        limit_excess: (n, joints) by how much each joint is beyond its limit [rad]; negative within.
     """
 
     description: str
@@ -116,30 +119,22 @@ class Candidate:
         return bool(branch.reach_excess.max() <= 0 and self.limit_excess.max() <= 0 and not branch.jumps.any())
 
 
-def enumerate_candidates(path: ToolPath, arm: Arm, settings: MotionSettings) -> list[Candidate]:
-    """Return a candidate for every branch of `arm` and every constant roll of the settings, along a tool path."""
-    rolls = [ToolRoll(angle) for angle in settings.rolls]
-    if arm.rolls_by_joint_6:
-        return [_candidate(path, branch, roll) for branch in _branches(path, arm, ToolRoll()) for roll in rolls]
-    if arm.model is not None:
-        return _numeric_candidates(path, arm, arm.model, rolls)
-    each = zip(*[_branches(path, arm, roll) for roll in rolls], strict=True)
-    return [_candidate(path, branch, roll) for same in each for branch, roll in zip(same, rolls, strict=True)]
-
-
 def rolled_candidate(path: ToolPath, branch: IkBranch, roll: ToolRoll) -> Candidate:
     """Return the candidate of a branch with another roll of the tool."""
     if not branch.arm.rolls_by_joint_6:
-        branch = _branches(path, branch.arm, roll)[branch.index]
-    return _candidate(path, branch, roll)
+        branch = closed_branches(path, branch.arm, roll)[branch.index]
+    return candidate_of(path, branch, roll)
 
 
 def configurations(path: ToolPath, candidate: Candidate, u: Array) -> Array:
-    """Return the configurations (m, 6) of a candidate at parameters (m,) that increase from the start of its curve."""
+    """Return the configurations (m, joints) of a candidate at parameters (m,) that increase from its start."""
     arm, roll = candidate.branch.arm, candidate.roll(u)
     if arm.model is not None:
-        seeds = np.stack([np.interp(u, path.parameters, joint) for joint in candidate.joints.T], axis=1)
-        return follow_near(rolled_poses(path.poses(u), roll, arm), seeds, arm.model)
+        seeds, held = np.stack([np.interp(u, path.parameters, joint) for joint in candidate.joints.T], axis=1), None
+        if (redundancy := candidate.branch.redundancy) is not None:
+            held = redundancy.sheet.joint
+            seeds[:, held] = nearest_turn(redundancy.angle(u), seeds[:, held])
+        return follow_near(rolled_poses(path.poses(u), roll, arm), seeds, arm.model, held=held)
     solutions = inverse_kinematics(rolled_poses(path.poses(u), roll, arm), arm)
     continuous = np.unwrap(solutions.joints[:, candidate.branch.index], axis=0)
     return shift_near(roll_tool(continuous, roll, arm), candidate.joints[0])
@@ -171,32 +166,24 @@ def roll_tool(joints: Array, roll: Array, arm: Arm) -> Array:
     return turned
 
 
-def _branches(path: ToolPath, arm: Arm, roll: ToolRoll) -> list[IkBranch]:
+def closed_branches(path: ToolPath, arm: Arm, roll: ToolRoll) -> list[IkBranch]:
     """Return every branch of an arm along a path, with the tool rolled where joint 6 alone does not roll it."""
     poses = rolled_poses(path.poses(path.parameters), roll(path.parameters), arm)
     solutions = inverse_kinematics(poses, arm)
     outside, found = solutions.reach_excess[:, 0], []
     for index in range(len(BRANCH_NAMES)):
         joints = np.unwrap(solutions.joints[:, index], axis=0)
-        found.append(IkBranch(arm, index, joints, outside, solutions.beyond_outer_reach, _jumps(joints)))
+        found.append(IkBranch(arm, index, joints, outside, solutions.beyond_outer_reach, jumps(joints)))
     return found
 
 
-def _numeric_candidates(path: ToolPath, arm: Arm, model: SerialArm, rolls: Sequence[ToolRoll]) -> list[Candidate]:
-    poses = path.poses(path.parameters)
-    ways = [rolled_poses(poses, roll(path.parameters), arm) for roll in rolls]
-    found, nearer = list[Candidate](), np.zeros(len(poses), dtype=np.bool_)
-    for number, each in enumerate(track_solutions(ways, model)):
-        branch = IkBranch(arm, number, each.joints, each.excess, nearer, _jumps(each.joints))
-        found.append(_candidate(path, branch, rolls[each.way]))
-    return found
-
-
-def _jumps(joints: Array) -> NDArray[np.bool_]:
+def jumps(joints: Array) -> NDArray[np.bool_]:
+    """Return (n,) where a joint of configurations (n, joints) jumps between a node and the next."""
     return np.append(np.abs(np.diff(joints, axis=0)).max(axis=1) > MAX_JOINT_STEP, False)
 
 
-def _candidate(path: ToolPath, branch: IkBranch, roll: ToolRoll) -> Candidate:
+def candidate_of(path: ToolPath, branch: IkBranch, roll: ToolRoll) -> Candidate:
+    """Return the candidate of a branch with a roll of the tool."""
     limits = branch.arm.limits
     joints = shift_within_limits(roll_tool(branch.joints, roll(path.parameters), branch.arm), limits)
     excess = np.maximum(joints - limits.upper, limits.lower - joints)
@@ -204,12 +191,12 @@ def _candidate(path: ToolPath, branch: IkBranch, roll: ToolRoll) -> Candidate:
 
 
 def shift_near(joints: Array, first: Array) -> Array:
-    """Shift each joint of continuous configurations (m, 6) by whole turns, to begin nearest to `first` (6,)."""
+    """Shift each joint of continuous configurations (m, joints) by whole turns, to begin nearest to `first`."""
     return np.asarray(joints + 2 * np.pi * np.round((first - joints[0]) / (2 * np.pi)), dtype=np.float64)
 
 
 def shift_within_limits(joints: Array, limits: JointLimits) -> Array:
-    """Shift each joint of continuous configurations (n, 6) by whole turns, nearest to the middle of its range."""
+    """Shift each joint of continuous configurations (n, joints) by whole turns, nearest to the middle of its range."""
     middle = (joints.max(axis=0) + joints.min(axis=0)) / 2
     turns = np.round(((limits.lower + limits.upper) / 2 - middle) / (2 * np.pi))
     return np.asarray(joints + 2 * np.pi * turns, dtype=np.float64)

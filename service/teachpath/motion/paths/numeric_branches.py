@@ -52,13 +52,15 @@ def track_solutions(ways: Sequence[Array], arm: SerialArm) -> list[TrackedSoluti
     return [TrackedSolution(int(way), found, missed) for way, found, missed in each]
 
 
-def follow_near(poses: Array, seeds: Array, arm: SerialArm) -> Array:
+def follow_near(poses: Array, seeds: Array, arm: SerialArm, *, held: int | None = None) -> Array:
     """Return the configurations (m, joints) at poses (m, 4, 4) that are nearest to seeds (m, joints).
+
+    Joint `held` keeps its angle.
 
     Raises:
         PathRefused: one of them does not close.
     """
-    joints, off = solve_near(poses, seeds, arm, FOLLOWING)
+    joints, off = solve_near(poses, seeds, arm, FOLLOWING, held=held)
     if off.max() > CLOSED:
         raise PathRefused(
             f"between two nodes of the path, {arm.name} was led {1e3 * off.max():.3g} mm past it: the path is too near "

@@ -25,7 +25,7 @@ LIFT_DIRECTIONS: Final = np.array(
 
 
 def approach_configurations(q: Array, arm: Arm, settings: MotionSettings) -> list[Array]:
-    """Return configurations (6,) from which the tool goes straight to configuration `q` (6,), the best first.
+    """Return configurations (joints,) from which the tool goes straight to configuration `q` (joints,), the best first.
 
     The tool keeps its orientation. It begins `motion.lift` away, or a share of it: above, slanted, or from a side. The
     last configuration is `q` itself. Those out of reach or beyond a joint limit are left out.
@@ -42,7 +42,7 @@ def approach_configurations(q: Array, arm: Arm, settings: MotionSettings) -> lis
 
 
 def _nearest_solutions(poses: Array, q: Array, arm: Arm) -> list[Array]:
-    """Return the configurations (6,) nearest to `q` (6,) at those of poses (m, 4, 4) that the arm reaches."""
+    """Return the configurations (joints,) nearest to `q` (joints,) at those of poses (m, 4, 4) that the arm reaches."""
     if arm.model is not None:
         joints, off = solve_near(poses, np.repeat(q[None], len(poses), axis=0), arm.model)
         return list(joints[off <= CLOSED])
@@ -56,7 +56,7 @@ def _nearest_solutions(poses: Array, q: Array, arm: Arm) -> list[Array]:
 
 
 def find_approach(model: CollisionModel, start: Array, settings: MotionSettings) -> Array:
-    """Find the configuration (6,) over which the arm goes from its home to the start of a path.
+    """Find the configuration (joints,) over which the arm goes from its home to the start of a path.
 
     Raises:
         PathRefused: none of those tried is free; the sentence says what is in the way of the first.
@@ -80,7 +80,7 @@ def find_approach(model: CollisionModel, start: Array, settings: MotionSettings)
 
 
 def find_retreat(model: CollisionModel, start: Array, goal: Array, settings: MotionSettings) -> Array:
-    """Find the configuration (6,) over which the arm goes from the goal of a path to its home.
+    """Find the configuration (joints,) over which the arm goes from the goal of a path to its home.
 
     Raises:
         PathRefused: none of those tried is free; the sentence says what is in the way of the first.

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from teachpath.lengths import describe_length
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, grasped_load
-from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, nearest_to_usable, node_faults
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import Candidate, nearest_to_usable, node_faults
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
 from teachpath.motion.planning.failure import (

@@ -9,6 +9,7 @@ from teachpath.motion.collision.collision_model import CollisionModel
 from teachpath.motion.paths.ik_branches import Candidate, cost, is_usable
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.planning.clearance import SUFFICIENT_CLEARANCE, rough_clearance
+from teachpath.motion.planning.redundancy_search import swivelled_candidates
 from teachpath.motion.planning.tool_roll import rolling_candidates
 from teachpath.motion.settings import MotionSettings
 
@@ -26,7 +27,8 @@ def clear_candidates(
 ) -> list[Candidate]:
     """Return the candidates that keep clear of everything, the best by cost and clearance first.
 
-    Where no candidate with a constant roll of the tool keeps clear, those whose tool rolls along the path are tried.
+    Where no candidate with a constant roll of the tool keeps clear, those are tried whose tool rolls along the path, or
+    whose redundant joint moves so that they do.
     Candidates that cost more than one with sufficient clearance are left out.
 
     Args:
@@ -37,7 +39,8 @@ def clear_candidates(
     """
     ranked = _ranked(tool_path, usable, model, settings)
     if not ranked:
-        ranked = _ranked(tool_path, rolling_candidates(tool_path, usable, model, settings), model, settings)
+        moving = rolling_candidates if model.arm.model is None else swivelled_candidates
+        ranked = _ranked(tool_path, moving(tool_path, usable, model, settings), model, settings)
     return [candidate for _, candidate in sorted(ranked, key=lambda pair: pair[0])]
 
 

@@ -81,7 +81,7 @@ def largest_speed(trajectory: TimedTrajectory, arm: Arm) -> Extreme:
     """Return the largest speed [m/s] of elbow, wrist and tool on a trajectory, proved between its rows too."""
     bounds = trajectory.speed_bounds(arm)
     row, point = np.unravel_index(int(np.argmax(bounds)), bounds.shape)
-    s = float(trajectory.table[min(int(row) * SPEED_STRIDE, len(trajectory.table) - 1), 0, 6])
+    s = float(trajectory.table[min(int(row) * SPEED_STRIDE, len(trajectory.table) - 1), 0, -1])
     return Extreme(float(bounds[row, point]), f"{point_names(arm)[point]} at s = {s:.3f} m", s)
 
 
@@ -89,13 +89,13 @@ def largest_limit_uses(setpoints: Array, rate: float, limits: JointLimits) -> tu
     """Measure how much of the joints' position, speed, acceleration and jerk limits setpoints use.
 
     Args:
-        setpoints: (n, 7) joints [rad] and where on the path each lies [m].
+        setpoints: (n, joints + 1) joints [rad] and where on the path each lies [m].
         rate: setpoints a second [Hz].
         limits: of the joints.
     """
     middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
-    shares = [np.abs(setpoints[:, :6] - middle) / half, *limit_uses(setpoints, limits.motion, rate)]
-    position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, 6], limits.names) for share in shares)
+    shares = [np.abs(setpoints[:, :-1] - middle) / half, *limit_uses(setpoints, limits.motion, rate)]
+    position, velocity, acceleration, jerk = (largest_use(share, setpoints[:, -1], limits.names) for share in shares)
     return position, velocity, acceleration, jerk
 
 

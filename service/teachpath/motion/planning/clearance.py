@@ -15,6 +15,8 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.records import Extreme
 
 SUFFICIENT_CLEARANCE: Final = 0.02  # m, more is not worth a costlier branch or more rolling of the tool
+SMOOTHING_CLEARANCE: Final = 0.001  # m, that a search asks for on top, because smoothing changes the angles
+CLEARANCE_WEIGHT: Final = 300.0  # cost of a missing metre of clearance in a search; a turn by one step costs 1
 
 
 def rough_clearance(
@@ -55,7 +57,7 @@ def path_clearance(
         deepest = -settings.contact_tolerance
         if prove_distance(check, lambda q: model.support_distances(q, load), deepest).distance < deepest:
             raise refusal(support_failure(tool_path, candidate, model, load, settings))
-    return _extreme(proved, float(joints(proved.parameter)[6]))
+    return _extreme(proved, float(joints(proved.parameter)[-1]))
 
 
 def _extreme(proved: ProvedDistance, s: float) -> Extreme:

@@ -14,12 +14,9 @@ def check_plannable(arm: Arm, scene: Scene) -> None:
     """Check that plans are made for an arm in a scene.
 
     Raises:
-        UnusableInput: a user's model has seven joints; or there is an object to carry, and no gripper to take it.
+        UnusableInput: there is an object to carry, and a user's model has no gripper to take it.
     """
-    if arm.model is None:
-        return
-    check_joints(arm)
-    if scene.carried is not None and not arm.has_gripper:
+    if arm.model is not None and scene.carried is not None and not arm.has_gripper:
         raise UnusableInput(
             f"{arm.name} has no gripper that is known here, and scene {scene.name} has {scene.carried.name} to carry; "
             "plan in a scene without an object, where its tool follows the path, or mount teachpath's own gripper "
@@ -27,20 +24,21 @@ def check_plannable(arm: Arm, scene: Scene) -> None:
         )
 
 
-def check_joints(arm: Arm) -> None:
-    """Check that an arm has as many joints as plans are made for; raises UnusableInput."""
-    if arm.model is not None and len(arm.model.links) != 6:
-        raise UnusableInput(
-            f"{arm.name} has {len(arm.model.links)} joints; plans are made for arms of six: fix one in the model"
-        )
-
-
 def check_home(settings: MotionSettings, arm: Arm) -> None:
-    """Check that the joints reach the arm's home; raises UnusableSettings."""
+    """Check that the home has an angle for each of the arm's joints, within its limits; raises UnusableSettings."""
     limits = arm.limits
+    check_home_size(settings, arm)
     for name, angle, lower, upper in zip(limits.names, settings.home, limits.lower, limits.upper, strict=True):
         if not lower <= angle <= upper:
             raise UnusableSettings(f"motion.home puts {name} to {angle:.3f} rad, limits {lower:.3f} to {upper:.3f}")
+
+
+def check_home_size(settings: MotionSettings, arm: Arm) -> None:
+    """Check that the home has an angle for each of the arm's joints; raises UnusableSettings."""
+    if len(settings.home) != arm.joint_count:
+        raise UnusableSettings(
+            f"setting motion.home has {len(settings.home)} angles, and the arm {arm.name} {arm.joint_count} joints"
+        )
 
 
 def with_home(settings: MotionSettings, arm: Arm) -> MotionSettings:

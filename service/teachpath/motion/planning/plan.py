@@ -10,7 +10,8 @@ from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.mounting import check_mounting
 from teachpath.motion.collision.collision_model import CollisionModel
-from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.planning.approach import find_approach, find_retreat
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates

@@ -21,7 +21,7 @@ def plan_notes(plan: Plan, arm: Arm) -> tuple[str, ...]:
         + (f" on {carried.name}, {object_mass(carried):.3g} kg" if carried else "")
         + "; the way to its start, grasp, release and the way home are not in it.",
         *arm_notes(arm),
-        f"Limits of joints 1 to 6: {_listed(plan.limits[0])} rad/s; {_listed(plan.limits[1])} rad/s^2; "
+        f"Limits of the joints, from the base: {_listed(plan.limits[0])} rad/s; {_listed(plan.limits[1])} rad/s^2; "
         f"{_listed(plan.limits[2])} rad/s^3.",
         _proved(plan, plan.certificate),
         *([_scope(plan.certificate.signature)] if plan.certificate.signature else []),

@@ -23,7 +23,7 @@ def sample_plan(plan: Plan, rate: float, arm: Arm) -> SampledMotion:
     trajectory = plan_trajectory(plan)
     count = int(np.ceil(trajectory.duration * rate)) + 1
     times = np.arange(count) / rate
-    positions, velocities, accelerations = trajectory.derivatives(times)[:, :, :6].transpose(1, 0, 2)
+    positions, velocities, accelerations = trajectory.derivatives(times)[:, :, :-1].transpose(1, 0, 2)
     resting = (times == 0.0) | (times >= trajectory.duration)
     velocities[resting] = accelerations[resting] = 0.0  # in the table they are as small as the integration of time
     signature = plan.certificate.signature

@@ -11,16 +11,15 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
-from scipy.ndimage import gaussian_filter1d
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_value
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
+from teachpath.motion.paths.grid_search import cheapest_sequence, smoothed
 from teachpath.motion.paths.ik_branches import Candidate, ToolRoll, is_usable, rolled_candidate, rolled_poses
 from teachpath.motion.paths.tool_path import ToolPath
-from teachpath.motion.planning.clearance import SUFFICIENT_CLEARANCE
+from teachpath.motion.planning.clearance import CLEARANCE_WEIGHT, SMOOTHING_CLEARANCE, SUFFICIENT_CLEARANCE
 from teachpath.motion.settings import MotionSettings
 
 ROLL_COUNT: Final = 24  # roll angles in a full turn
@@ -28,10 +27,6 @@ ROLL_STEP: Final = 2 * np.pi / ROLL_COUNT  # rad, between two roll angles
 SEARCH_NODES: Final = 60  # of the path, about
 COARSE_STRIDE: Final = 3  # of the first, coarse search, in search nodes
 MAX_ROLL_STEPS: Final = 2  # that the tool may turn from a search node to the next
-SMOOTHING_CLEARANCE: Final = 0.001  # m, on top of the required clearance, because smoothing changes the angles
-CLEARANCE_WEIGHT: Final = 300.0  # cost of a missing metre of clearance; a turn by one roll step costs 1
-FILTER_WIDTH: Final = 2.0  # search nodes, standard deviation of the filter that smooths the angles
-SPLINE_DEGREE: Final = 5  # of the angles as a function of the curve's parameter
 
 
 def rolling_candidates(
@@ -45,15 +40,13 @@ def rolling_candidates(
         model: of arm and scene.
         settings: clearance to keep.
     """
-    if model.arm.model is not None:
-        return []  # its branches are followed with constant rolls only
     found, carries = [], model.scene.carried is not None
     first = {
         (candidate.branch.index, str(candidate.roll) if carries else ""): candidate for candidate in reversed(usable)
     }
     for candidate in first.values():
         if angles := _search_rolls(tool_path, candidate, model, settings):
-            roll = ToolRoll(spline=_smoothed(*angles))
+            roll = ToolRoll(spline=smoothed(*angles))
             found.append(rolled_candidate(tool_path, candidate.branch, roll))
     return [candidate for candidate in found if is_usable(candidate, settings)]
 
@@ -69,7 +62,7 @@ def _search_rolls(
     steps = _roll_steps(candidate.joints[nodes], model.arm)
     coarse = _roll_costs(tool_path, candidate, nodes[::COARSE_STRIDE], steps, model, settings)
     # A sequence through all nodes is one through some of them too; mostly these suffice to see that there is none.
-    if _cheapest_sequence(coarse, COARSE_STRIDE * MAX_ROLL_STEPS) is None:
+    if cheapest_sequence(coarse, COARSE_STRIDE * MAX_ROLL_STEPS) is None:
         return None
     costs = np.empty((len(nodes), len(steps)))
     rest = np.arange(len(nodes)) % COARSE_STRIDE != 0
@@ -77,7 +70,7 @@ def _search_rolls(
         coarse,
         _roll_costs(tool_path, candidate, nodes[rest], steps, model, settings),
     )
-    sequence = _cheapest_sequence(costs, MAX_ROLL_STEPS)
+    sequence = cheapest_sequence(costs, MAX_ROLL_STEPS)
     if sequence is None:
         return None
     u = tool_path.parameters[nodes]
@@ -137,35 +130,3 @@ def _clearances(tool_path: ToolPath, candidate: Candidate, nodes: NDArray[np.int
     every, _ = _rolled_joints(tool_path, candidate, nodes, np.arange(ROLL_COUNT))
     rows = model.clearances(every.reshape(-1, 6), load=grasped_load(model, candidate.joints[0]))
     return np.array([row.distance for row in rows]).reshape(len(nodes), ROLL_COUNT)
-
-
-def _cheapest_sequence(costs: Array, max_change: int) -> NDArray[np.int64] | None:
-    """Return the column at each row (k,) of the cheapest sequence through a grid of costs (k, m); None without one.
-
-    Args:
-        costs: (k, m), infinite where the sequence must not go.
-        max_change: of the column between two rows; a change by c costs c^2.
-    """
-    count = costs.shape[1]
-    total, previous = costs[0], []
-    for row in costs[1:]:
-        padded = np.pad(total, max_change, constant_values=np.inf)
-        trials = np.stack([padded[k : k + count] + (k - max_change) ** 2 for k in range(2 * max_change + 1)])
-        previous.append(np.arange(count) + trials.argmin(axis=0) - max_change)
-        total = trials.min(axis=0) + row
-    if not np.isfinite(total.min()):
-        return None
-    chosen = [int(np.argmin(total))]
-    for back in reversed(previous):
-        chosen.append(int(back[chosen[-1]]))
-    return np.array(chosen[::-1])
-
-
-def _smoothed(u: Array, angles: Array) -> BSpline[np.float64]:
-    """Return a spline near angles (k,) at parameters `u` (k,); with angles for coefficients, it does not overshoot."""
-    smooth = gaussian_filter1d(angles, FILTER_WIDTH, mode="nearest")
-    inner = np.interp(np.linspace(0, len(u) - 1, max(len(u) // 3, 2)), np.arange(len(u)), u)
-    knots = np.concatenate([np.zeros(SPLINE_DEGREE), inner, np.ones(SPLINE_DEGREE)])
-    knots[SPLINE_DEGREE], knots[-SPLINE_DEGREE - 1] = 0.0, 1.0
-    greville = np.convolve(knots[1:-1], np.full(SPLINE_DEGREE, 1 / SPLINE_DEGREE), mode="valid")
-    return BSpline(knots, np.interp(greville, u, smooth), SPLINE_DEGREE)

@@ -64,9 +64,9 @@ def time_within_torques(
         joints, squared_rates = time_tool_path(tool_path, candidate, limits, rate=settings.rate)
         trajectory = time_joint_path(joints, squared_rates, limits)
         rows = trajectory.table[::TORQUE_STRIDE]
-        q, velocity = rows[:, 0, :6], rows[:, 1, :6]
+        q, velocity = rows[:, 0, :-1], rows[:, 1, :-1]
         bounds = dynamics.torque_bounds(q, velocity, limits.acceleration)
-        worst = largest_use(bounds, rows[:, 0, 6], arm.limits.names, arm.limits.torque)
+        worst = largest_use(bounds, rows[:, 0, -1], arm.limits.names, arm.limits.torque)
         if worst.value <= 1.0:
             _check_tolerance(tool_path, joints, arm, settings)
             return TimedPath(joints, squared_rates, limits, trajectory, worst)
@@ -87,8 +87,8 @@ def move_within_torques(
     """Time a straight move of the joints with accelerations that are within the motors' torques everywhere on it.
 
     Args:
-        start: configuration (6,) [rad].
-        goal: configuration (6,) [rad].
+        start: configuration (joints,) [rad].
+        goal: configuration (joints,) [rad].
         limits: to keep.
         dynamics: of the arm with its payload and what it carries.
         arm: that moves.
@@ -119,11 +119,11 @@ def _load_hint(arm: Arm, dynamics: Dynamics) -> str:
 def _check_tolerance(tool_path: ToolPath, joints: JointPath, arm: Arm, settings: MotionSettings) -> None:
     """Check that the tool stays within the path's tolerance between the nodes of the joints' spline."""
     reached = joints(joints.dense_parameters())
-    wanted = tool_path.curve(tool_path.arc.parameters(reached[:, 6]))
-    off = np.linalg.norm(tool_pose(reached[:, :6], arm)[:, :3, 3] - wanted, axis=1)
+    wanted = tool_path.curve(tool_path.arc.parameters(reached[:, -1]))
+    off = np.linalg.norm(tool_pose(reached[:, :-1], arm)[:, :3, 3] - wanted, axis=1)
     worst = int(np.argmax(off))
     if off[worst] > settings.path_tolerance:
-        s = float(reached[worst, 6])
+        s = float(reached[worst, -1])
         node = int(np.argmin(np.abs(tool_path.lengths - s)))
         raise PathRefused(
             f"the path bends too sharply to be followed within its tolerance {tool_path.describe_node(node)}; "

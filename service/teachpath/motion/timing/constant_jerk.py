@@ -24,8 +24,8 @@ class ConstantJerkMotion:
     """A motion to rest in n control periods.
 
     Attributes:
-        states: (n + 1, 3, 6) position [rad], velocity and acceleration of the joints at the ends of the periods.
-        jerks: (n, 6) in the periods [rad/s^3].
+        states: (n + 1, 3, joints) position [rad], velocity and acceleration of the joints at the ends of the periods.
+        jerks: (n, joints) in the periods [rad/s^3].
         period: [s].
     """
 
@@ -38,9 +38,9 @@ class ConstantJerkMotion:
         """Return the motion to rest whose jerks are nearest to the mean ones of a reference.
 
         Args:
-            begin: (3, 6) position, velocity and acceleration.
-            accelerations: (n + 1, 6) of the reference at the ends of the periods, n at least `MIN_PERIODS`.
-            goal: (6,) where it rests [rad].
+            begin: (3, joints) position, velocity and acceleration.
+            accelerations: (n + 1, joints) of the reference at the ends of the periods, n at least `MIN_PERIODS`.
+            goal: (joints,) where it rests [rad].
         """
         count = len(accelerations) - 1
         scale = period ** np.arange(3.0)[:, None]
@@ -51,22 +51,22 @@ class ConstantJerkMotion:
         free = np.array(
             [place + count * (speed + count / 2 * acceleration), speed + count * acceleration, acceleration]
         )
-        missing = np.array([goal, *np.zeros((2, 6))]) - free - effects.T @ jerks
+        missing = np.array([goal, *np.zeros((2, len(goal)))]) - free - effects.T @ jerks
         basis, triangle = np.linalg.qr(effects)
         jerks += basis @ np.linalg.solve(triangle.T, missing)  # the least change that ends at rest at the goal
-        states = np.empty((count + 1, 3, 6))
+        states = np.empty((count + 1, 3, len(goal)))
         states[:, 2] = _summed(acceleration, jerks)
         states[:, 1] = _summed(speed, states[:-1, 2] + jerks / 2)
         states[:, 0] = _summed(place, states[:-1, 1] + states[:-1, 2] / 2 + jerks / 6)
         states /= scale
-        states[-1] = goal, *np.zeros((2, 6))  # but for rounding, it is there
+        states[-1] = goal, *np.zeros((2, len(goal)))  # but for rounding, it is there
         return cls(states, jerks / period**3, period)
 
     def __len__(self) -> int:
         return len(self.jerks)
 
     def largest_speeds(self) -> Array:
-        """Return the largest speed (6,) of each joint at any moment [rad/s]."""
+        """Return the largest speed (joints,) of each joint at any moment [rad/s]."""
         speed, acceleration = self.states[:-1, 1], self.states[:-1, 2]
         with np.errstate(divide="ignore", invalid="ignore"):
             turning = -acceleration / self.jerks  # [s] in a period, when a speed has its extreme
@@ -76,21 +76,21 @@ class ConstantJerkMotion:
         return np.asarray(np.maximum(most, np.abs(np.where(inside, extreme, 0.0)).max(axis=0)))
 
     def limit_uses(self, limits: MotionLimits) -> Array:
-        """Return the largest share (6,) that each joint uses of its limits of speed, acceleration and jerk, ever."""
+        """Return the largest share (joints,) of its limits of speed, acceleration and jerk that each joint uses."""
         speeds = self.largest_speeds() / limits.speed
         accelerations = np.abs(self.states[:, 2]).max(axis=0) / limits.acceleration  # linear in a period
         jerks = np.abs(self.jerks).max(axis=0) / limits.jerk
         return np.asarray(np.maximum.reduce([speeds, accelerations, jerks]))
 
     def turns(self) -> Array:
-        """Return bounds (n, 6) of how far each joint turns in a period, to and fro [rad]."""
+        """Return bounds (n, joints) of how far each joint turns in a period, to and fro [rad]."""
         # The coefficients of a speed in the Bernstein basis, whose functions have the same integral.
         speed, acceleration = self.states[:-1, 1], self.states[:-1, 2]
         middle = speed + self.period / 2 * acceleration
         return self.period / 3 * (np.abs(speed) + np.abs(middle) + np.abs(self.states[1:, 1]))
 
     def hull(self) -> Array:
-        """Return configurations (m, 6) in whose range the joints stay: coefficients of the cubics by Bernstein."""
+        """Return configurations (m, joints) in whose range the joints stay: coefficients of the cubics by Bernstein."""
         third = self.period / 3
         ahead = self.states[:-1, 0] + third * self.states[:-1, 1]
         behind = self.states[1:, 0] - third * self.states[1:, 1]

@@ -77,8 +77,8 @@ class _DurationProblem:
     def of(path: JointPath, limits: MotionLimits, intervals: int, margins: Margins, arm: Arm) -> _DurationProblem:
         """Set up the problem of a joint path, for the joints that move on it."""
         places = ((np.arange(intervals)[:, None] + SAMPLE_POINTS) / intervals).ravel()
-        one, two, three = (path(places, k)[:, :6] for k in (1, 2, 3))
-        tool_ceiling = squared_rate_ceiling(path(places)[:, :6], one, margins.speed * limits.tool_speed, arm)
+        one, two, three = (path(places, k)[:, :-1] for k in (1, 2, 3))
+        tool_ceiling = squared_rate_ceiling(path(places)[:, :-1], one, margins.speed * limits.tool_speed, arm)
         moves = np.abs(one).max(axis=0) > STILL_SPEED_SHARE * limits.speed
         forward = np.where(one >= 0.0, 1.0, -1.0)
         one, two, three = ((forward * part)[:, moves] for part in (one, two, three))

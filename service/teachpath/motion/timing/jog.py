@@ -24,7 +24,7 @@ def time_at_length(trajectory: TimedTrajectory, s: float) -> float:
     """Return the plan time [s] at which a trajectory reaches arc length `s` [m]."""
     return float(
         np.interp(
-            s, np.maximum.accumulate(trajectory.table[:, 0, 6]), np.arange(len(trajectory.table)) * trajectory.step
+            s, np.maximum.accumulate(trajectory.table[:, 0, -1]), np.arange(len(trajectory.table)) * trajectory.step
         )
     )
 
@@ -58,7 +58,7 @@ def jog_trajectory(trajectory: TimedTrajectory, begin: float, end: float, rate: 
         raise Conflict("the path ends here; there is nothing left to go in that direction")
     low, high = sorted((begin, end))
     rows = trajectory.table[int(low / trajectory.step) : int(np.ceil(high / trajectory.step)) + 1]
-    steepest = np.maximum(np.abs(rows[:, 1, :6]).max(axis=0), 1e-9)  # of the joints by plan time
+    steepest = np.maximum(np.abs(rows[:, 1, :-1]).max(axis=0), 1e-9)  # of the joints by plan time
     acceleration = min(float(np.min(trajectory.limits.acceleration / steepest)), MAX_TIME_ACCELERATION)
     jerk = min(float(np.min(trajectory.limits.jerk / steepest)), MAX_TIME_JERK)
     slower = 1.0
@@ -80,7 +80,7 @@ def jog_trajectory(trajectory: TimedTrajectory, begin: float, end: float, rate: 
 
 
 def _along(trajectory: TimedTrajectory, tau: Array) -> list[Array]:
-    """Return joints and arc length (n, 7) at plan times (n,), and their three derivatives by plan time."""
+    """Return joints and arc length (n, joints + 1) at plan times (n,), and their three derivatives by plan time."""
     row = np.clip(np.rint(tau / trajectory.step).astype(np.int64), 0, len(trajectory.table) - 1)
     ahead = (tau - row * trajectory.step)[:, None]
     value, first, second, third = (trajectory.table[row, k] for k in range(4))

@@ -30,8 +30,8 @@ def straight_move(
     """Return the fastest motion from rest to rest on the straight line between two configurations (Ruckig).
 
     Args:
-        start: configuration (6,) [rad].
-        goal: configuration (6,) [rad].
+        start: configuration (joints,) [rad].
+        goal: configuration (joints,) [rad].
         limits: to keep.
         arm: that moves.
         margins: shares of speed, acceleration and jerk limits that the motion itself uses.
@@ -52,7 +52,7 @@ def straight_move(
     )
     place, rate, acceleration, jerk, step = run
     count = len(place) - 1
-    ahead, still = np.append(direction, 1.0), np.zeros((count + 1, 7))
+    ahead, still = np.append(direction, 1.0), np.zeros((count + 1, len(direction) + 1))
     line = [np.append(start, 0.0) + place[:, None] * ahead, np.tile(ahead, (count + 1, 1)), still, still]
     return TimedTrajectory(apply_chain_rule(line, rate, acceleration, jerk), step, limits)
 
@@ -102,7 +102,7 @@ def prove_move_clear(
     gripper_open: bool,
     move_name: str,
 ) -> float:
-    """Prove the clearance [m] of straight lines of the joints between configurations (n, 6), and return it.
+    """Prove the clearance [m] of straight lines of the joints between configurations (n, joints), and return it.
 
     Open fingers must stay away from an object that stands in the scene, or keep it between them.
 
@@ -143,7 +143,7 @@ def joint_waypoints(
     """Find the waypoints from one configuration to another: on a straight line of the joints, or over the arm's home.
 
     Returns:
-        Two or three configurations (6,), from `here` to `goal`.
+        Two or three configurations (joints,), from `here` to `goal`.
 
     Raises:
         PathRefused: neither is free; the sentence says what comes too near on the straight line.
@@ -167,9 +167,9 @@ def waypoints_home(
 
     Args:
         model: of arm and scene.
-        start: configuration (6,) at the path's start.
-        goal: configuration (6,) at its end.
-        above_goal: configuration (6,) above its end.
+        start: configuration (joints,) at the path's start.
+        goal: configuration (joints,) at its end.
+        above_goal: configuration (joints,) above its end.
         settings: home and clearances.
 
     Raises:
@@ -185,7 +185,7 @@ def waypoints_home(
 
 
 def placed_load(model: CollisionModel, start: Array, goal: Array) -> Load | None:
-    """Return the load that stands at the goal, after it was carried from configuration `start` (6,) to `goal` (6,)."""
+    """Return the load that stands at the goal, after it was carried from configuration `start` to `goal` (joints,)."""
     carried = model.scene.carried
     if carried is None:
         return None

@@ -27,9 +27,9 @@ def place_in_table(table: Array, step: float, tau: float) -> tuple[int, float]:
 
 @kernel
 def evaluate_table(table: Array, step: float, tau: float, out: Array) -> None:
-    """Write joints and arc length (7,) at plan time `tau` to `out`; outside the plan, those of its ends."""
+    """Write joints and arc length (joints + 1,) at plan time `tau` to `out`; outside the plan, those of its ends."""
     row, ahead = place_in_table(table, step, tau)
-    for i in range(7):
+    for i in range(len(out)):
         out[i] = table[row, 0, i] + ahead * (
             table[row, 1, i] + ahead / 2.0 * (table[row, 2, i] + ahead / 3.0 * table[row, 3, i])
         )
@@ -78,10 +78,10 @@ def shortest_ramp(ramp: Array, state: Array, target: float, steepest: float, har
 
 @kernel
 def evaluate_motion(table: Array, step: float, state: Array, out: Array) -> None:
-    """Write value, velocity and acceleration (3, 7) of joints and arc length at a state (tau, r, r') to `out`."""
+    """Write value, velocity and acceleration (3, joints + 1) of joints and arc length at (tau, r, r') to `out`."""
     evaluate_table(table, step, state[0], out[0])
     row, ahead = place_in_table(table, step, state[0])
-    for i in range(7):
+    for i in range(out.shape[1]):
         first = table[row, 1, i] + ahead * (table[row, 2, i] + ahead / 2.0 * table[row, 3, i])
         second = table[row, 2, i] + ahead * table[row, 3, i]
         out[1, i] = first * state[1]

@@ -44,8 +44,10 @@ class Margins:
         return self.against[0] - self.against_at_speed[0], self.against[1] - self.against_at_speed[1]
 
     def time_stretch(self, setpoints: Array, limits: MotionLimits, rate: float) -> float:
-        """Return the factor by which time must be stretched for setpoints (n, 6) to use no more than these shares."""
-        v, a, j = (change / limit for change, limit in zip(_changes(setpoints, rate), _each(limits), strict=True))
+        """Return the factor by which time must be stretched for setpoints (n, joints) to use only these shares."""
+        v, a, j = (
+            change / limit for change, limit in zip(_changes(setpoints, limits, rate), _each(limits), strict=True)
+        )
         fast = np.minimum((np.abs(v).max(axis=1) / self.speed) ** 2, 1.0)
         factors = [np.abs(v).max() / self.speed]
         for k, (use, root) in enumerate(((a, np.sqrt), (j, np.cbrt))):
@@ -60,21 +62,21 @@ NO_MARGINS: Final = Margins(1.0, (1.0, 1.0), (1.0, 1.0), (1.0, 1.0))
 
 
 def limit_uses(setpoints: Array, limits: MotionLimits, rate: float) -> tuple[Array, Array, Array]:
-    """Return the used shares of speed (n - 1, 6), acceleration (n - 2, 6) and jerk limits (n - 3, 6) by differences."""
+    """Return the used shares of speed (n - 1, joints), acceleration and jerk limits, by differences."""
     first, second, third = (
-        np.abs(change) / limit for change, limit in zip(_changes(setpoints, rate), _each(limits), strict=True)
+        np.abs(change) / limit for change, limit in zip(_changes(setpoints, limits, rate), _each(limits), strict=True)
     )
     return first, second, third
 
 
 def largest_use(values: Array, lengths: Array, names: Sequence[str], limits: Array | float = 1.0) -> Extreme:
-    """Return the largest share of the limits (6,) in values (n, 6), with its joint and arc length.
+    """Return the largest share of the limits (joints,) in values (n, joints), with its joint and arc length.
 
     Args:
-        values: (n, 6) of the joints.
+        values: (n, joints) of the joints.
         lengths: (n,) arc lengths where they occur [m].
         names: of the joints.
-        limits: (6,), or 1 for values that are shares already.
+        limits: (joints,), or 1 for values that are shares already.
     """
     share = values / limits
     row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
@@ -82,8 +84,9 @@ def largest_use(values: Array, lengths: Array, names: Sequence[str], limits: Arr
     return Extreme(float(share[row, joint]), f"{names[int(joint)]} at s = {s:.3f} m", s)
 
 
-def _changes(setpoints: Array, rate: float) -> list[Array]:
-    return [np.diff(setpoints[:, :6], order, axis=0) * rate**order for order in (1, 2, 3)]
+def _changes(setpoints: Array, limits: MotionLimits, rate: float) -> list[Array]:
+    joints = setpoints[:, : len(limits.speed)]  # what may stand behind them is a length
+    return [np.diff(joints, order, axis=0) * rate**order for order in (1, 2, 3)]
 
 
 def _each(limits: MotionLimits) -> tuple[Array, Array, Array]:

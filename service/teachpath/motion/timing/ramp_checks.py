@@ -31,14 +31,15 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
     """Check the setpoints of a ramp, joined to those already sent, against the limits.
 
     Args:
-        sent: (PHASES, 3, 6) see `advance`.
-        limits: (3, 6) of first, second and third difference of setpoints [rad].
+        sent: (PHASES, 3, joints) see `advance`.
+        limits: (3, joints) of first, second and third difference of setpoints [rad].
         dt: control period [s].
 
     Returns:
         Which limit is broken first, or KEPT, and how long after the beginning [s].
     """
-    window, before, motion, state, scale = sent.copy(), np.empty((3, 7)), np.empty((3, 7)), np.empty(3), 1.0 / limits
+    window, before, state, scale = sent.copy(), np.empty((3, table.shape[2])), np.empty(3), 1.0 / limits
+    motion = np.empty_like(before)
     duration = ramp[3] + ramp[4] + ramp[5]
     if not 0.0 <= duration <= MAX_RAMP_PERIODS * dt:  # nor may it be no number
         return ACCELERATION_BROKEN, 0.0
@@ -68,12 +69,13 @@ def check_states(
     Args:
         begin: (3,) tau, r and r' at the beginning.
         states: (n, 3) the same one period apart; the last of `count` rests.
-        sent: (PHASES, 3, 6) see `advance`.
-        limits: (3, 6) of first, second and third difference of setpoints [rad].
+        sent: (PHASES, 3, joints) see `advance`.
+        limits: (3, joints) of first, second and third difference of setpoints [rad].
         dt: control period [s].
         uses: (n,) where the share is written that each setpoint uses of what is accepted, at most.
     """
-    window, before, motion, scale = sent.copy(), np.empty((3, 7)), np.empty((3, 7)), 1.0 / limits
+    window, before, scale = sent.copy(), np.empty((3, table.shape[2])), 1.0 / limits
+    motion = np.empty_like(before)
     most = 0.0
     uses[:count] = 0.0
     evaluate_motion(table, step, begin, motion)
@@ -94,15 +96,15 @@ def advance(window: Array, begin: Array, end: Array, dt: float, scale: Array) ->
     Joints that are no numbers use infinitely much.
 
     Args:
-        window: (PHASES, 3, 6) joints at moments of the last period, the setpoint last, and their first and second
+        window: (PHASES, 3, joints) joints at moments of the last period, the setpoint last, and their first and second
             differences over a period.
-        begin: (3, 7) motion at the last setpoint (see `evaluate_motion`).
-        end: (3, 7) motion at this one.
+        begin: (3, joints + 1) motion at the last setpoint (see `evaluate_motion`).
+        end: (3, joints + 1) motion at this one.
         dt: control period [s].
-        scale: (3, 6) inverse limits of first, second and third difference [1/rad].
+        scale: (3, joints) inverse limits of first, second and third difference [1/rad].
     """
     speed = acceleration = jerk = total = 0.0
-    for i in range(6):
+    for i in range(window.shape[2]):
         p, v, a = begin[0, i], dt * begin[1, i], dt * dt * begin[2, i] / 2.0
         d, e, f = end[0, i] - p - v - a, dt * end[1, i] - v - 2.0 * a, dt * dt * end[2, i] / 2.0 - a
         third, fourth, fifth = 10.0 * d - 4.0 * e + f, -15.0 * d + 7.0 * e - 2.0 * f, 6.0 * d - 3.0 * e + f

@@ -64,7 +64,7 @@ class RampFinder:
         Args:
             target: rate to which it leads.
             state: (3,) plan time [s], its rate and the rate's derivative where it begins.
-            sent: (PHASES, 3, 6) setpoint and differences there (see `ramp_checks.advance`).
+            sent: (PHASES, 3, joints) setpoint and differences there (see `ramp_checks.advance`).
         """
         given = (self._table, self._step, state, target, sent, self._limits, self._dt)
         peak = -1.0
@@ -94,7 +94,7 @@ class RampFinder:
     def _shorten(self, lead: int, periods: int, state: Array, sent: Array) -> int:
         """Search for a shorter stop that begins as the one in `stop` does for `lead` periods; return its periods."""
         known, later, differences = self.stop[:periods].copy(), state.copy(), sent.copy()
-        begin = (known, periods, 0, self._dt, differences, later, np.empty((lead, 3, 7)))
+        begin = (known, periods, 0, self._dt, differences, later, np.empty((lead, 3, differences.shape[2] + 1)))
         ramp_following.follow(self._table, self._step, *begin)
         rest = self._find_stop(later, differences)
         if 0 < rest < periods - lead:

@@ -46,11 +46,11 @@ def follow(
 
     Args:
         states: (n, 3) see `state_after`; `begin` of them are done.
-        sent: (PHASES, 3, 6) where the setpoints are taken in (see `advance`).
+        sent: (PHASES, 3, joints) where the setpoints are taken in (see `advance`).
         state: (3,) the last state, which is overwritten.
-        out: (m, 3, 7) where the motion is written, one a period (see `evaluate_motion`).
+        out: (m, 3, joints + 1) where the motion is written, one a period (see `evaluate_motion`).
     """
-    motion = np.empty((3, 7))
+    motion = np.empty((3, table.shape[2]))
     evaluate_motion(table, step, state, motion)
     for k in range(out.shape[0]):
         ended = advance_along(table, step, states, count, begin + k + 1, dt, state, motion, sent)
@@ -69,8 +69,8 @@ def advance_along(
 
     Args:
         states: (n, 3) see `state_after`.
-        motion: (3, 7) that of the period before, which is overwritten.
-        sent: (PHASES, 3, 6) where the setpoint is taken in (see `advance`).
+        motion: (3, joints + 1) that of the period before, which is overwritten.
+        sent: (PHASES, 3, joints) where the setpoint is taken in (see `advance`).
     """
     before, end = motion.copy(), (table.shape[0] - 1) * step
     state[0], state[1], state[2] = state_after(states, count, done, dt)
@@ -78,5 +78,5 @@ def advance_along(
     if ended:
         state[0], state[1], state[2] = min(max(state[0], 0.0), end), 0.0, 0.0
     evaluate_motion(table, step, state, motion)
-    advance(sent, before, motion, dt, np.ones((3, 6)))
+    advance(sent, before, motion, dt, np.ones(sent.shape[1:]))
     return bool(ended)

@@ -33,7 +33,7 @@ def find_ramp(
     last phase, otherwise |r'|. After a ramp was found, the remaining trials lie halfway to those that broke a limit.
 
     Args:
-        sent: (PHASES, 3, 6) see `ramp_checks.advance`.
+        sent: (PHASES, 3, joints) see `ramp_checks.advance`.
         within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
         tries: ramps that are checked at most.
         max_rate: largest |r| that the limit of the tool's speed allows.
@@ -79,7 +79,7 @@ def shorten_ramp(
     a reduction with which every shape does for a smaller one.
 
     Args:
-        sent: (PHASES, 3, 6) see `ramp_checks.advance`.
+        sent: (PHASES, 3, joints) see `ramp_checks.advance`.
         within: duration of the present ramp [s]; a new one must be shorter by `MIN_TIME_SAVED`.
         tries: ramps that are checked at most.
         max_rate: largest |r| that the limit of the tool's speed allows.
@@ -142,7 +142,7 @@ def _search_bounds(table: Array, step: float, state: Array, limits: Array, dt: f
     row = min(max(int(state[0] / step + 0.5), 0), last)
     reach = int(state[1] * LOOKAHEAD_TIME / step)
     steepest, hardest = MAX_RATE_ACCELERATION, MAX_RATE_JERK
-    for i in range(6):
+    for i in range(limits.shape[1]):
         moving = 1e-12
         for share in range(3):
             moving = max(moving, abs(table[min(max(row + reach * share // 2, 0), last), 1, i]))

@@ -37,18 +37,19 @@ def find_stop(
 
     Args:
         state: (3,) tau, r and r' where it begins.
-        sent: (PHASES, 3, 6) see `ramp_checks.advance`.
+        sent: (PHASES, 3, joints) see `ramp_checks.advance`.
         max_rate: largest |r| that the limit of the tool's speed allows.
         tries: stops that are checked at most.
         out: (m, 3) tau, r and r' at the end of each period; m bounds the stop's duration.
     """
     rows = out.shape[0]
     direction = 1.0 if state[1] > 0.0 or (state[1] == 0.0 and state[2] > 0.0) else -1.0
-    bounds = np.empty((2, 6))
-    for i in range(6):
+    joints = limits.shape[1]
+    bounds = np.empty((2, joints))
+    for i in range(joints):
         bounds[0, i], bounds[1, i] = limits[1, i] / dt**2, limits[2, i] / dt**2
     shares, uses = np.full(rows + 1, INITIAL_SHARE), np.empty(rows)
-    states, trial, bends = np.empty((rows + 1, 3)), np.empty((rows + 1, 3)), np.empty((rows + 1, 6))
+    states, trial, bends = np.empty((rows + 1, 3)), np.empty((rows + 1, 3)), np.empty((rows + 1, joints))
     jerks, floor = np.empty((rows + 1, 2)), np.empty(rows + 1)
     states[0, 0], states[0, 1], states[0, 2] = state[0], direction * state[1], direction * state[2]
     for _ in range(tries):
@@ -89,7 +90,7 @@ def _brake(
 
     Args:
         states: (n, 3); the first one is given, in the direction of motion.
-        bends: (n, 6) accelerations of the joints in these states [rad/s^2].
+        bends: (n, joints) accelerations of the joints in these states [rad/s^2].
         jerks: (n, 2) range of the third derivative in the period behind each state.
         floor: (n,) least slope for the sake of a later state.
 
@@ -97,7 +98,7 @@ def _brake(
         How many states were written.
     """
     last, rows = table.shape[0] - 1, states.shape[0]
-    base, gain = np.empty(6), np.empty(6)
+    base, gain = np.empty(bounds.shape[1]), np.empty(bounds.shape[1])
     floor[:] = -UNBOUNDED
     _bend(table, step, direction, states[0], bends[0])
     k = repairs = 0
@@ -127,7 +128,7 @@ def _brake(
             return k + 1
         k += 1
         states[k, 0], states[k, 1], states[k, 2] = tau, r, a
-        for i in range(6):
+        for i in range(len(base)):
             bends[k, i] = base[i] + gain[i] * jerk
     return k + 1
 
@@ -140,7 +141,7 @@ def _less_braking(
     """Return the slope in a state that closes the gap by which the range of third derivatives is empty (Newton)."""
     less = bend + SLOPE_STEP / dt * gain
     given = (table, step, direction, bounds, dt, share, tau, r, a + SLOPE_STEP)
-    low, high = _jerk_range(*given, less, np.empty(6), np.empty(6))
+    low, high = _jerk_range(*given, less, np.empty_like(less), np.empty_like(less))
     closing = (gap - (low - high)) / SLOPE_STEP
     return a + (1.1 * gap / closing + 0.01 if closing > 1e-3 else 0.05 * abs(a))
 
@@ -215,7 +216,7 @@ def _release(
     """
     end = (table.shape[0] - 1) * step
     tau, r, a = states[k, 0], states[k, 1], states[k, 2]
-    bend, base, gain = bends[k].copy(), np.empty(6), np.empty(6)
+    bend, base, gain = bends[k].copy(), np.empty_like(bends[k]), np.empty_like(bends[k])
     while k < out.shape[0] - 2 and a < 0.0:
         low, high = _jerk_range(table, step, direction, bounds, dt, shares[k], tau, r, a, bend, base, gain)
         left, needed = -2.0 * r / a, a * a / (2.0 * r)  # a constant third derivative leads to rest
@@ -236,7 +237,7 @@ def _release(
             return 0
         k += 1
         out[k, 0], out[k, 1], out[k, 2] = tau, r, a
-        for i in range(6):
+        for i in range(len(bend)):
             bend[i] = base[i] + gain[i] * jerk
     return 0
 
@@ -249,9 +250,9 @@ def _advanced(direction: float, t: float, tau: float, r: float, a: float, jerk: 
 
 @kernel
 def _bend(table: Array, step: float, direction: float, state: Array, out: Array) -> None:
-    """Write the joints' accelerations (6,) [rad/s^2] in a state."""
+    """Write the joints' accelerations (joints,) [rad/s^2] in a state."""
     row, ahead = place_in_table(table, step, state[0])
-    for i in range(6):
+    for i in range(len(out)):
         second = table[row, 2, i] + ahead * table[row, 3, i]
         first = table[row, 1, i] + ahead * (table[row, 2, i] + ahead / 2.0 * table[row, 3, i])
         out[i] = direction * first * state[2] + second * state[1] ** 2
@@ -268,16 +269,16 @@ def _jerk_range(
     what it changes by. The range is empty, lowest above highest, where no third derivative does for all joints.
 
     Args:
-        bounds: (2, 6) of the joints' accelerations and of their change in a period [rad/s^2]
+        bounds: (2, joints) of the joints' accelerations and of their change in a period [rad/s^2]
         share: of them that may be used.
-        bend: (6,) the joints' accelerations now [rad/s^2].
-        base: (6,) where the bases are written.
-        gain: (6,) where the gains are written.
+        bend: (joints,) the joints' accelerations now [rad/s^2].
+        base: (joints,) where the bases are written.
+        gain: (joints,) where the gains are written.
     """
     rate = r + a * dt
     row, ahead = place_in_table(table, step, tau + direction * dt * (r + dt * a / 2.0))
     lowest, highest = -UNBOUNDED, UNBOUNDED
-    for i in range(6):
+    for i in range(len(bend)):
         two = table[row, 2, i] + ahead * table[row, 3, i]
         one = direction * (table[row, 1, i] + ahead * (table[row, 2, i] + ahead / 2.0 * table[row, 3, i]))
         b, g = one * a + two * rate * rate, dt * (one + two * rate * dt)

@@ -31,7 +31,7 @@ class TimedTrajectory:
     """Joints and arc length as functions of plan time.
 
     Attributes:
-        table: (n, 4, 7) of the six joints [rad] and the arc length [m]: value and three time derivatives.
+        table: (n, 4, joints + 1) of the joints [rad] and the arc length [m]: value and three time derivatives.
         step: between two rows [s].
         limits: that the arm must keep on this trajectory.
     """
@@ -46,24 +46,24 @@ class TimedTrajectory:
         return (len(self.table) - 1) * self.step
 
     def __call__(self, times: Array) -> Array:
-        """Return the joints and the arc length (m, 7) at plan times (m,) [s]; outside the plan, those of its ends."""
+        """Return joints and arc length (m, joints + 1) at plan times (m,) [s]; outside the plan, those of its ends."""
         ahead, value, first, second, third = self._rows_near(times)
         return np.asarray(value + ahead * (first + ahead / 2 * (second + ahead / 3 * third)), dtype=np.float64)
 
     def derivatives(self, times: Array) -> Array:
-        """Return joints and arc length (m, 3, 7) at plan times (m,) [s]: value and first two time derivatives."""
+        """Return joints and arc length (m, 3, joints + 1) at plan times (m,) [s]: value and two derivatives."""
         ahead, _, first, second, third = self._rows_near(times)
         return np.stack([self(times), first + ahead * (second + ahead / 2 * third), second + ahead * third], axis=1)
 
     def _rows_near(self, times: Array) -> tuple[Array, Array, Array, Array, Array]:
-        """Return how far (m, 1) [s] times lie from the nearest rows, and value and derivatives (m, 7) of these rows."""
+        """Return how far (m, 1) [s] times lie from the nearest rows, and what they hold (m, joints + 1)."""
         at = np.clip(times, 0.0, self.duration)
         row = np.rint(at / self.step).astype(np.int64)
         value, first, second, third = (self.table[row, k] for k in range(4))
         return (at - row * self.step)[:, None], value, first, second, third
 
     def setpoints(self, rate: float, *, phase: float = 0.0, override: float = 1.0) -> Array:
-        """Return the setpoints (n, 7) at a constant override, with some of the standstill before and after.
+        """Return the setpoints (n, joints + 1) at a constant override, with some of the standstill before and after.
 
         Args:
             rate: setpoints a second [Hz].
@@ -79,7 +79,7 @@ class TimedTrajectory:
         They are of every `SPEED_STRIDE`-th row of the table and of the last one.
         """
         rows = np.concatenate([self.table[:-1:SPEED_STRIDE], self.table[-1:]])
-        return speed_bounds(rows[:, :, :6], SPEED_STRIDE * self.step, arm)
+        return speed_bounds(rows[:, :, :-1], SPEED_STRIDE * self.step, arm)
 
 
 def time_joint_path(path: JointPath, squared_rates: Array, limits: MotionLimits) -> TimedTrajectory:
@@ -113,10 +113,10 @@ def time_joint_path(path: JointPath, squared_rates: Array, limits: MotionLimits)
 
 
 def apply_chain_rule(values: list[Array], one: Array, two: Array, three: Array) -> Array:
-    """Return a table (n, 4, 7) of time derivatives by the chain rule.
+    """Return a table (n, 4, joints + 1) of time derivatives by the chain rule.
 
     Args:
-        values: (n, 7) values and three derivatives with respect to a parameter.
+        values: (n, joints + 1) values and three derivatives with respect to a parameter.
         one: (n,) first time derivative of the parameter.
         two: (n,) second time derivative.
         three: (n,) third time derivative.

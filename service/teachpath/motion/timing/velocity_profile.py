@@ -24,10 +24,10 @@ def max_squared_rates(grid: Array, first: Array, second: Array, speed: Array, ac
 
     Args:
         grid: (n,) increasing.
-        first: (n, 6) dq/dp at the points.
-        second: (n, 6) d2q/dp2.
-        speed: (6,) limits [rad/s].
-        acceleration: (6,) limits [rad/s^2].
+        first: (n, joints) dq/dp at the points.
+        second: (n, joints) d2q/dp2.
+        speed: (joints,) limits [rad/s].
+        acceleration: (joints,) limits [rad/s^2].
         cap: (n,) or scalar, upper bound of x for other reasons.
 
     Returns:

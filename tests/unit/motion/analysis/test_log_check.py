@@ -110,6 +110,10 @@ def test_a_csv_is_read_back_and_a_broken_one_names_its_line() -> None:
     assert on_path is not None
     assert on_path.all()
     assert len(times) == 6
+    seven = header.replace("q6,", "q6,q7,") + "\n".join(row.replace("0.5", "0.5,0.7") for row in rows)
+    np.testing.assert_array_equal(read_setpoints(seven.encode(), "log.csv")[1][:, 5], np.full(6, 0.7))
+    with pytest.raises(UnusableRecording, match="setpoints of 7 joints; the arm, corke-armstrong, has 6"):
+        check_log(SetpointLog(*read_setpoints(seven.encode(), "log.csv")[:2]), None, Arm.of_variant())
     for text, sentence in (
         ("", "first line must be"),
         (header, "0 setpoints are too few"),

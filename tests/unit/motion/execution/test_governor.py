@@ -10,7 +10,8 @@ import teachpath.motion
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import MAX_REVERSE_RATE, Governor
-from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import is_usable
 from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.joint_moves import straight_move

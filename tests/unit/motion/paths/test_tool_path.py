@@ -7,7 +7,8 @@ from teachpath.errors import UnusableInput, UnusableSettings
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.motion.paths.ik_branches import enumerate_candidates, shift_within_limits
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import shift_within_limits
 from teachpath.motion.paths.tool_path import ArcLength, sample_tool_path
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings

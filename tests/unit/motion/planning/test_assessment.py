@@ -6,7 +6,8 @@ import pytest
 from teachpath.errors import PathRefused
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
-from teachpath.motion.paths.ik_branches import enumerate_candidates, nearest_to_usable
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import nearest_to_usable
 from teachpath.motion.paths.tool_path import control_point_weights, sample_tool_path
 from teachpath.motion.planning.assessment import assess
 from teachpath.motion.planning.failure import first_failing_range

@@ -5,7 +5,8 @@ import numpy as np
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.motion.collision.collision_model import CollisionModel
-from teachpath.motion.paths.ik_branches import cost, enumerate_candidates
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import cost
 from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
 from teachpath.motion.planning.clearance import SUFFICIENT_CLEARANCE, rough_clearance

@@ -8,7 +8,8 @@ from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.kinematics import link_frames, tool_pose
 from teachpath.motion.arm.model import Arm, Payload
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.motion.paths.ik_branches import enumerate_candidates, is_usable
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import is_usable
 from teachpath.motion.paths.tool_path import sample_tool_path
 from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.planning.digest import verify

@@ -5,7 +5,8 @@ from teachpath.motion.arm.joint_path import JointPath
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.paths.ik_branches import Candidate, enumerate_candidates, is_usable
+from teachpath.motion.paths.enumeration import enumerate_candidates
+from teachpath.motion.paths.ik_branches import Candidate, is_usable
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.jerk_limited_topp import minimize_duration
