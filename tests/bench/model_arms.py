@@ -9,12 +9,14 @@ import numpy as np
 
 from teachpath.errors import PathRefused
 from teachpath.io.arm_models.arm_reader import read_arm
+from teachpath.io.arm_models.examples import EXAMPLES
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.planning.sampled_plan import sample_plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Fit, LearnedPath, Plan, SerialArm
 from tests.bench.report import Figure, against, print_report
+from tests.plan_checker.model_judge import ModelJudge
 from tests.plan_checker.random_cases import random_case
 
 HEIGHT = 0.5  # [m] of the table, on which the arm stands
@@ -27,12 +29,15 @@ def measure(example: str, *, count: int) -> list[Figure]:
     model = read_arm(example, base=((0.0, 0.0, HEIGHT), (1.0, 0.0, 0.0, 0.0)), gripper_length=0.13)
     arm = Arm.of_model(model, MotionSettings())
     _planned(0, arm)
+    judge = ModelJudge(EXAMPLES[example], HEIGHT, arm.tool_length)
     found = [_planned(seed, arm) for seed in range(count)]
+    wrong = [seed for seed, (made, _) in enumerate(found) if made and not judge.accepts(made, *random_case(seed), arm)]
     plans = [(made, seconds) for made, seconds in found if made is not None]
     uses = np.max([_largest_use(made, arm, model) for made, _ in plans])
     refused = tuple(took for made, took in found if made is None)
     return [
         Figure(f"plans accepted of {count} random paths", (float(len(plans)),), "plans"),
+        Figure("of them off the path or too near to something, by MuJoCo", (float(len(wrong)),), "plans"),
         against("largest use of a joint's speed, acceleration or jerk", [float(uses)], "", name="limit", value=1.0),
         against(
             "planning a metre, CPU",

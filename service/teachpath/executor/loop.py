@@ -26,6 +26,7 @@ from teachpath.io import wire
 from teachpath.io.bus import Bus
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import warm_up
+from teachpath.motion.execution.hand_kinematics import warm_up_hand
 from teachpath.motion.planning.signature import SigningKey
 from teachpath.motion.settings import MotionSettings
 from teachpath.realtime import EXECUTOR_PRIORITY, realtime_threads, request_realtime
@@ -101,6 +102,7 @@ class Executor:
     def run(self, stop: threading.Event) -> None:
         """Stream setpoints until `stop` is set; then bring the arm to rest on its path and return."""
         warm_up(self._period, self._arm)
+        warm_up_hand(self._arm)
         with realtime_threads(self._settings.realtime):
             handles = [
                 self._bus.subscribe(self._keys.state(self._robot), self._joint_states.receive),

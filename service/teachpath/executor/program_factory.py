@@ -126,11 +126,6 @@ class ProgramFactory:
 
     def _follow_hand(self, command: Command) -> PreparedProgram:
         request = documents.decode(TeleopRequest, command.teleop)
-        if self.arm.model is not None:
-            raise PathRefused(
-                f"a live hand leads the Puma 560 alone, and this arm is {self.arm.identity}; show the task and let the "
-                "arm follow the learned path, or leave out motion.arm"
-            )
         for name, value, (low, high) in (
             ("scale", request.scale, SCALE_RANGE),
             ("share", request.share, SHARE_RANGE),

@@ -169,3 +169,42 @@ def _write_step(jacobian: Array, error: Array, step: Array) -> None:
         largest = max(largest, abs(step[k]))
     for k in range(len(step)):
         step[k] *= min(1.0, MAX_STEP / largest)
+
+
+@kernel
+def turn_wrists(
+    before: Array, orientations: Array, begin: Array, turns: Array, axes: Array, anchors: Array, tool: Array,
+    iterations: int, residual: float, out: Array,
+) -> float:  # fmt: skip
+    """Write the last three joints (n, 3) that give the tool its orientations; return the largest angle left [rad].
+
+    Args:
+        before: (n, joints - 3) angles of the joints before [rad].
+        orientations: (n, 3, 3) to world from the tool.
+        begin: (joints,) configuration before the first, from which Newton's method begins; then it goes on from each.
+        turns: see `approach_poses`, as all that follow.
+    """
+    count = len(begin)
+    lead, largest = count - 3, 0.0
+    error, jacobian, step = np.empty(6), np.empty((6, count)), np.empty(count)
+    q, frames, reached, wanted = begin.copy(), np.empty((count, 4, 4)), np.empty((4, 4)), np.empty((4, 4))
+    for row in range(len(before)):
+        q[:lead] = before[row]
+        off = np.inf
+        for _ in range(iterations):
+            _place_links(q, turns, frames)
+            _write_product(frames[count - 1], tool, reached)
+            wanted[:, 3] = reached[:, 3]  # only the turn is asked for
+            wanted[:3, :3] = orientations[row]
+            off = _write_error(wanted, reached, error)
+            if off <= residual:
+                break
+            _write_jacobian(frames, axes, anchors, reached, jacobian)
+            jacobian[:3] = 0.0
+            jacobian[:, :lead] = 0.0
+            _write_step(jacobian, error, step)
+            for joint in range(lead, count):
+                q[joint] += step[joint]
+        out[row] = q[lead:]
+        largest = max(largest, off)
+    return largest

@@ -19,11 +19,11 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.collision.collision_model import CollisionModel, Load
+from teachpath.motion.execution.hand_kinematics import WRIST, HandKinematics
 from teachpath.motion.execution.teleop_checks import MotionCheck, SweptCheck, TorqueCheck, limit_passed
 from teachpath.motion.execution.teleop_goal import (
     MIN_TURN,
     ReachableGoal,
-    branch_at,
     nearest_reachable,
 )
 from teachpath.motion.execution.teleop_pace import Pace
@@ -63,7 +63,7 @@ class TeleopFollower:
 
     Args:
         model: of the scene.
-        start_q: (6,) where the arm rests [rad].
+        start_q: (joints,) where the arm rests [rad].
         settings: home, clearances and singularities.
         scale: of the tool's way over the hand's.
         share: of the joints' speed, acceleration and jerk limits.
@@ -96,7 +96,7 @@ class TeleopFollower:
         self._pace = Pace(limits, model.arm, period)
         self._torque_check = TorqueCheck(model)
         pose = tool_pose(start_q, model.arm)
-        self._branch = branch_at(start_q, pose, model.arm)
+        self._kinematics = HandKinematics.at(start_q, model.arm, settings.least_singular)
         self._orientation = pose[:3, :3]  # (3, 3) of the tool where it rests, or where the present motion ends
         self._state: tuple[Array, Array, Array] = (np.array(start_q, dtype=np.float64), *np.zeros((2, len(start_q))))
         self._motion: ToolMotion | None = None
@@ -117,7 +117,7 @@ class TeleopFollower:
 
     @property
     def state(self) -> tuple[Array, Array, Array]:
-        """Position, velocity and acceleration (6,) of the newest setpoint."""
+        """Position, velocity and acceleration (joints,) of the newest setpoint."""
         return self._state
 
     @property
@@ -188,7 +188,7 @@ class TeleopFollower:
         return self._motion.states[self._sample + 1 :] if self._motion else np.empty((0, 3, len(self._state[0])))
 
     def rest_at(self, position: Array) -> None:
-        """Stand at a configuration (6,) at once; only for an arm that rests there already."""
+        """Stand at a configuration (joints,) at once; only for an arm that rests there already."""
         self._state = (position, *np.zeros((2, len(position))))
         self._orientation = tool_pose(position, self._model.arm)[:3, :3]
         self._motion = self._planned = self._planning = None
@@ -213,8 +213,7 @@ class TeleopFollower:
             pose,
             self._shares.way * _capped(target.position - pose[:3, 3], MAX_TOOL_LEAD),
             self._shares.turn * _capped(wanted, MAX_TURN_LEAD),
-            arm,
-            self._branch,
+            self._kinematics,
             self._settings.least_singular,
         )
         yield
@@ -249,11 +248,9 @@ class TeleopFollower:
             self._take_up(_PlannedMotion(begins, motion, stamp), self._hindrance(goal, wanted))
 
     def _motion_to(self, begin: ToolState, goal: ReachableGoal) -> ToolMotion | None:
-        flip = self._branch % 2 == 1
-        limits, reach, arm = self._pace.limits, self._pace.reach, self._model.arm
-        here = begin.joints[0, :3]
-        joints = here + reach * (goal.joints[:3] - here)
-        return plan_tool_motion(begin, joints, reach * goal.turn, limits, arm, flip=flip, period=self._period)
+        limits, reach, here = self._pace.limits, self._pace.reach, begin.joints[0, :-WRIST]
+        joints = here + reach * (goal.joints[:-WRIST] - here)
+        return plan_tool_motion(begin, joints, reach * goal.turn, limits, self._kinematics, period=self._period)
 
     def _hindrance(self, goal: ReachableGoal, wanted: Array) -> str:
         """Say why the tool will not be where the hand is although a motion passed its checks; else nothing."""

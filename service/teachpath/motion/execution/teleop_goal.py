@@ -13,10 +13,9 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from teachpath.errors import PathRefused
-from teachpath.motion.arm.kinematics import BRANCH_NAMES, inverse_kinematics, min_singular_value
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.execution.hand_kinematics import HandKinematics
 
 MAX_JOINT_LEAD: Final = 0.25  # [rad] of one motion: more could not be checked in time
 POSES_PER_SOLVE: Final = 8  # poses on the way to the target for which inverse kinematics are solved at once
@@ -33,7 +32,7 @@ class ReachableGoal:
     """What the tool can reach in one motion.
 
     Attributes:
-        joints: (6,) [rad].
+        joints: (joints,) [rad].
         turn: (3,) rotation vector of the tool from its orientation at the begin, in axes of the world [rad].
         reason: why it does not go all the way, in words; empty when it does.
         moves: whether it is elsewhere than the begin.
@@ -50,26 +49,26 @@ class _Way:
     """Poses on a straight way: `share` of the hand's turn, `good` of them reachable from the begin on."""
 
     share: float
-    joints: Array  # (POSES_PER_SOLVE + 1, 6) from the begin on
+    joints: Array  # (POSES_PER_SOLVE + 1, joints) from the begin on
     good: int
     fault: str
 
 
 def nearest_reachable(
-    begin: Array, pose: Array, move: Array, turn: Array, arm: Arm, branch: int, least_singular: float
+    begin: Array, pose: Array, move: Array, turn: Array, kinematics: HandKinematics, least_singular: float
 ) -> ReachableGoal:
     """Return the goal nearest to where the hand leads the tool that is reached from where it is, on one branch.
 
     Args:
-        begin: (6,) [rad].
+        begin: (joints,) [rad].
         pose: (4, 4) of the tool there, to world from the tool.
         move: (3,) to the target [m, world].
         turn: (3,) rotation vector to the target's orientation, in axes of the world [rad].
-        branch: of inverse kinematics.
+        kinematics: of the arm.
         least_singular: value of the Jacobian below which a pose counts as singular.
     """
     shares = TURN_SHARES if np.linalg.norm(turn) > MIN_TURN else (1.0,)
-    ways = _ways(begin, pose, move, turn, shares, arm, branch, least_singular)
+    ways = _ways(begin, pose, move, turn, shares, kinematics, least_singular)
     best = max(ways, key=lambda way: (way.good, way.share))
     if not np.any(np.abs(move) > 1e-6):  # the hand only turns
         best = max(ways, key=lambda way: way.good * way.share)
@@ -84,29 +83,13 @@ def nearest_reachable(
     return ReachableGoal(goal, part * near / POSES_PER_SOLVE * best.share * turn, reason if is_hindered else "")
 
 
-def branch_at(here: Array, pose: Array, arm: Arm) -> int:
-    """Return the branch of inverse kinematics that a configuration (6,) is on, whose tool is at a pose (4, 4).
-
-    Raises:
-        PathRefused: it is on none.
-    """
-    solved = inverse_kinematics(pose[None], arm, previous_q4=float(here[3])).joints[0]
-    off = np.abs(np.angle(np.exp(1j * (solved - here)))).max(axis=1)
-    if off.min() > 1e-3:
-        raise PathRefused(
-            f"the arm stands on none of its {len(BRANCH_NAMES)} branches; bring it nearer to its home first"
-        )
-    return int(np.argmin(off))
-
-
 def _ways(
     begin: Array,
     pose: Array,
     move: Array,
     turn: Array,
     shares: tuple[float, ...],
-    arm: Arm,
-    branch: int,
+    kinematics: HandKinematics,
     least_singular: float,
 ) -> list[_Way]:
     steps = np.arange(1, POSES_PER_SOLVE + 1) / POSES_PER_SOLVE
@@ -114,20 +97,17 @@ def _ways(
     turns = (np.array(shares)[:, None, None] * steps[:, None] * turn).reshape(-1, 3)
     poses[..., :3, :3] = (Rotation.from_rotvec(turns).as_matrix() @ pose[:3, :3]).reshape(*poses.shape[:2], 3, 3)
     poses[..., :3, 3] = pose[:3, 3] + steps[:, None] * move
-    solved = inverse_kinematics(poses.reshape(-1, 4, 4), arm, previous_q4=float(begin[3]))
-    joints = solved.joints[:, branch].reshape(len(shares), POSES_PER_SOLVE, 6)
-    excess = solved.reach_excess[:, branch].reshape(len(shares), POSES_PER_SOLVE)
-    joints = np.unwrap(np.concatenate([np.tile(begin, (len(shares), 1, 1)), joints], axis=1), axis=1)
-    singular = min_singular_value(joints[:, 1:], arm) < least_singular
+    joints, missed = kinematics.follow(begin, poses)
+    singular = kinematics.singular_values(joints[:, 1:]) < least_singular
     return [
-        _Way(share, joints[k], *_first_fault(joints[k], excess[k] > 0, singular[k], arm))
+        _Way(share, joints[k], *_first_fault(joints[k], missed[k], singular[k], kinematics.arm))
         for k, share in enumerate(shares)
     ]
 
 
 def _first_fault(joints: Array, out_of_reach: Array, singular: Array, arm: Arm) -> tuple[int, str]:
     """Return how many poses are good, and what is wrong with the next one in words."""
-    beyond = np.maximum(joints[1:] - arm.limits.upper, arm.limits.lower - joints[1:])  # (n, 6) of each joint [rad]
+    beyond = np.maximum(joints[1:] - arm.limits.upper, arm.limits.lower - joints[1:])  # (n, joints) of each joint [rad]
     turns = np.abs(np.diff(joints, axis=0)).max(axis=1) > MAX_JOINT_JUMP
     bad = np.array([out_of_reach, beyond.max(axis=1) > 0, singular, turns])
     if not bad.any():

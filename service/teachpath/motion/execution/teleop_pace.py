@@ -9,6 +9,7 @@ import numpy as np
 from teachpath.motion.arm.limits import MotionLimits
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.execution.hand_kinematics import WRIST
 from teachpath.motion.execution.tool_motion import ToolMotion
 
 MIN_SHARE: Final = 0.05  # of the limits that is tried at least
@@ -25,7 +26,7 @@ SLOW_SHARE: Final = 0.25  # below which it is said that the wrist slows the tool
 
 
 class Pace:
-    """The limits that joints 1 to 3 and the tool's turn are given, so that what follows from them keeps its own.
+    """The limits of the joints before the wrist and of the tool's turn, so that what follows from them keeps its own.
 
     Args:
         limits: of the joints and of the speed in space.
@@ -41,7 +42,7 @@ class Pace:
         self._period = period
         # The tool turns within the limits of the slowest joint of the wrist.
         self._widest = LEADING_SHARE * np.array(
-            [[*row[:3], *[row[3:].min()] * 3] for row in (limits.speed, limits.acceleration, limits.jerk)]
+            [[*row[:-WRIST], *[row[-WRIST:].min()] * WRIST] for row in (limits.speed, limits.acceleration, limits.jerk)]
         )
         self._speeds = self._widest[0]
         self._share = 1.0  # of speed, acceleration and jerk, for the wrist's sake
@@ -50,7 +51,7 @@ class Pace:
 
     @property
     def limits(self) -> Array:
-        """Speed, acceleration and jerk (3, 6) that may be used now."""
+        """Speed, acceleration and jerk (3, joints) that may be used now."""
         limits = self._share * self._widest
         limits[0] = np.minimum(limits[0], self._speeds)
         return limits

@@ -1,8 +1,8 @@
-"""Motions to rest on which the tool turns only as it is told to: the wrist makes up for what joints 1 to 3 turn.
+"""Motions to rest on which the tool turns only as it is told to: the wrist makes up for the joints before it.
 
-Ruckig leads joints 1 to 3 and the rotation vector of the tool; joints 4 to 6 follow from both. So the tool keeps its
-orientation on the whole way, and not at its ends alone, where no turn is asked for. What is sent is the motion nearest
-to that whose jerk is constant in every control period (`constant_jerk.py`).
+Ruckig leads these and the rotation vector of the tool; the wrist, the last three joints, follows from both. So the tool
+keeps its orientation on the whole way, and not at its ends alone, where no turn is asked for. What is sent is the
+motion nearest to that whose jerk is constant in every control period (`constant_jerk.py`).
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ import numpy as np
 from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
 from scipy.spatial.transform import Rotation
 
-from teachpath.motion.arm.kinematics import wrist_joints
-from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.execution.hand_kinematics import WRIST, HandKinematics
 from teachpath.motion.timing.constant_jerk import MIN_PERIODS, ConstantJerkMotion
 
 DIFFERENCE_STEP: Final = 1e-4  # [s] of the differences that give velocity and acceleration of the wrist
@@ -28,7 +27,7 @@ class ToolState:
     """Where the joints and the tool's orientation are at one instant, and how they move.
 
     Attributes:
-        joints: (3, 6) position [rad], velocity and acceleration of the joints, one a row.
+        joints: (3, joints) position [rad], velocity and acceleration of the joints, one a row.
         orientation: (3, 3) to world from the tool.
         turning: (2, 3) angular velocity [rad/s] and acceleration of the tool, in axes of the world.
     """
@@ -39,8 +38,8 @@ class ToolState:
 
     @classmethod
     def resting(cls, q: Array, orientation: Array) -> ToolState:
-        """Return the state of an arm that rests at a configuration (6,)."""
-        return cls(np.array([q, *np.zeros((2, 6))]), orientation, np.zeros((2, 3)))
+        """Return the state of an arm that rests at a configuration (joints,)."""
+        return cls(np.array([q, *np.zeros((2, len(q)))]), orientation, np.zeros((2, 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +59,12 @@ class ToolMotion:
 
     @property
     def states(self) -> Array:
-        """Position [rad], velocity and acceleration (n, 3, 6) at the samples."""
+        """Position [rad], velocity and acceleration (n, 3, joints) at the samples."""
         return self.joints.states[1:]
 
     @property
     def positions(self) -> Array:
-        """Configurations (n, 6) at the samples [rad]."""
+        """Configurations (n, joints) at the samples [rad]."""
         return self.states[:, 0]
 
     def tool_state(self, sample: int) -> ToolState:
@@ -79,8 +78,8 @@ class ToolMotion:
 
     @property
     def leading_speeds(self) -> Array:
-        """Largest speeds (6,) of joints 1 to 3 and of the tool's turn [rad/s]."""
-        rates = np.hstack([self.states[:, 1, :3], self._turns[:, 1]])
+        """Largest speeds (joints,) of the joints before the wrist and of the tool's turn [rad/s]."""
+        rates = np.hstack([self.states[:, 1, :-WRIST], self._turns[:, 1]])
         return np.asarray(np.abs(rates).max(axis=0), dtype=np.float64)
 
     @property
@@ -90,52 +89,53 @@ class ToolMotion:
 
 
 def plan_tool_motion(
-    begin: ToolState, goal: Array, turn: Array, limits: Array, arm: Arm, *, flip: bool, period: float
+    begin: ToolState, goal: Array, turn: Array, limits: Array, kinematics: HandKinematics, *, period: float
 ) -> ToolMotion | None:
     """Plan the motion to a place and an orientation; the wrist's own limits are not kept yet, see `Pace`.
 
     Args:
-        goal: (3,) where joints 1 to 3 come to rest [rad].
+        goal: (joints - 3,) where the joints before the wrist come to rest [rad].
         turn: (3,) rotation vector of the tool from its present orientation, in axes of the world [rad].
-        limits: (3, 6) of speed, acceleration and jerk of joints 1 to 3 and of the tool's turn.
-        flip: which of the wrist's two solutions the arm is on.
+        limits: (3, joints) of speed, acceleration and jerk of the joints before the wrist and of the tool's turn.
+        kinematics: of the arm.
         period: between two samples [s].
 
     Returns:
-        The motion, or None when there is nothing to move or Ruckig finds none.
+        The motion, or None when there is nothing to move, Ruckig finds none, or the wrist cannot follow.
     """
     run = _state_to_rest(begin, goal, turn, limits)
     if run is None:
         return None
     count = max(MIN_PERIODS, int(np.ceil(run.duration / period)))
     instants = [min(k * period, run.duration) for k in range(count + 1)]
-    rows = np.array([run.at_time(t)[:3] for t in instants])  # (n + 1, 3 derivatives, 6)
+    rows = np.array([run.at_time(t)[:3] for t in instants])  # (n + 1, 3 derivatives, joints)
     rows[np.array(instants) == run.duration, 1:] = 0.0
-    arm_joints = _neighbours(rows[:, :, :3])  # (n + 1, 3 instants, 3)
-    orientations = _orientations(rows[:, :, 3:], begin.orientation)
-    solved = wrist_joints(
-        arm_joints.reshape(-1, 3), orientations.reshape(-1, 3, 3), arm, flip=flip, previous_q4=float(begin.joints[0, 3])
-    )
-    wrist = np.unwrap(np.concatenate([begin.joints[None, 0, 3:], solved]), axis=0)[1:].reshape(-1, 3, 3)
+    before_wrist = _neighbours(rows[:, :, :-WRIST])  # (n + 1, 3 instants, joints - 3)
+    orientations = _orientations(rows[:, :, -WRIST:], begin.orientation)
+    solved = kinematics.wrist(before_wrist.reshape(-1, len(goal)), orientations.reshape(-1, 3, 3), begin.joints[0])
+    if solved is None:
+        return None
+    wrist = solved.reshape(-1, 3, WRIST)
     before, now, after = wrist[:, 0], wrist[:, 1], wrist[:, 2]
     bends = (after - 2 * now + before) / DIFFERENCE_STEP**2
     bends[rows[:, 1:].any(axis=(1, 2)) == 0] = 0.0
-    accelerations = np.hstack([rows[:, 2, :3], bends])
-    rest = np.hstack([rows[-1, 0, :3], now[-1]])
+    accelerations = np.hstack([rows[:, 2, :-WRIST], bends])
+    rest = np.hstack([rows[-1, 0, :-WRIST], now[-1]])
     joints = ConstantJerkMotion.near(begin.joints, accelerations, rest, period)
-    return ToolMotion(joints, rows[1:, :, 3:], begin.orientation)
+    return ToolMotion(joints, rows[1:, :, -WRIST:], begin.orientation)
 
 
 def _state_to_rest(begin: ToolState, goal: Array, turn: Array, limits: Array) -> Trajectory | None:
-    inputs = InputParameter(6)
-    inputs.current_position = [*begin.joints[0, :3], *STILL]
-    inputs.current_velocity = [*begin.joints[1, :3], *begin.turning[0]]
-    inputs.current_acceleration = [*begin.joints[2, :3], *begin.turning[1]]
+    lead = len(goal)
+    inputs = InputParameter(lead + WRIST)
+    inputs.current_position = [*begin.joints[0, :lead], *STILL]
+    inputs.current_velocity = [*begin.joints[1, :lead], *begin.turning[0]]
+    inputs.current_acceleration = [*begin.joints[2, :lead], *begin.turning[1]]
     inputs.target_position = [*goal, *turn]
     inputs.max_velocity, inputs.max_acceleration, inputs.max_jerk = limits.tolist()
-    run = Trajectory(6)
+    run = Trajectory(lead + WRIST)
     try:
-        result = Ruckig(6).calculate(inputs, run)
+        result = Ruckig(lead + WRIST).calculate(inputs, run)
     except RuckigError:
         return None
     return run if result == Result.Working and run.duration > 0.0 else None
