@@ -95,6 +95,15 @@ def test_every_operation_says_whether_it_asks_who_sends() -> None:
     assert DESCRIPTION["servers"]
 
 
+def test_the_glossary_has_every_word_of_the_addresses() -> None:
+    glossary = (Path(__file__).parents[2] / "docs" / "glossary.md").read_text().lower()
+    said = set(re.findall(r"[a-z]+", glossary))
+    steps = {step for path in DESCRIPTION["paths"] for step in path.split("/")[3:] if "{" not in step}
+    needed = {word for step in steps for word in step.split("-")} - {"password"}
+    assert len(needed) > 50
+    assert [word for word in sorted(needed) if not {word, word.removesuffix("s"), word.removesuffix("es")} & said] == []
+
+
 def test_every_kind_of_refusal_is_listed(desk: Desk) -> None:
     kinds = SCHEMAS["Refusal"]["properties"]["type"]["enum"]
     assert len(set(kinds)) == len(kinds) > 20
