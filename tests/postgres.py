@@ -89,6 +89,11 @@ class Server:
         """Break every connection but the one that asks for it."""
         self._administer("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE pid <> pg_backend_pid()")
 
+    @property
+    def socket(self) -> str:
+        """The file of the socket at which it listens."""
+        return str(self._folder / ".s.PGSQL.5432")
+
     def _make_database(self, name: str, template: str) -> None:
         self._administer(f"CREATE DATABASE {name} TEMPLATE {template} STRATEGY file_copy")
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from teachpath.io.memory_bus import MemoryBus
+from teachpath.io.store.changes import Changed, unheard
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.jobs.executors import Work
@@ -26,9 +27,11 @@ def learn(reports: int, *, progress: Callable[[float, str], None]) -> Learned:
     return learned()
 
 
-def job_service(url: str, folder: str, *, station: str = "cell", role: str = "worker") -> tuple[Store, Jobs]:
+def job_service(
+    url: str, folder: str, *, station: str = "cell", role: str = "worker", changed: Changed = unheard
+) -> tuple[Store, Jobs]:
     """Open a service whose jobs report as often as they are asked to; it is still to be started."""
-    store = Store(StoreSettings(folder, url, station))
+    store = Store(StoreSettings(folder, url, station), changed=changed)
     store.services.begin(role)
 
     def prepare(job: Job) -> tuple[Any, ...]:

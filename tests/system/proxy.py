@@ -6,14 +6,14 @@ import threading
 
 
 class Proxy:
-    """Forwards connections to `port`; use it as a context manager.
+    """Forwards connections to a port of this machine, or to the socket at a path; use it as a context manager.
 
     Attributes:
         port: where clients connect.
     """
 
-    def __init__(self, port: int) -> None:
-        self._to = port
+    def __init__(self, to: int | str) -> None:
+        self._to = to
         self._server = socket.create_server(("127.0.0.1", 0))
         self.port = int(self._server.getsockname()[1])
         self._flows = threading.Event()
@@ -65,7 +65,7 @@ class Proxy:
                 client.close()
                 continue
             try:
-                server = socket.create_connection(("127.0.0.1", self._to))
+                server = self._connect()
             except OSError:
                 client.close()
                 continue
@@ -78,6 +78,13 @@ class Proxy:
                 continue
             for one, other in ((client, server), (server, client)):
                 threading.Thread(target=self._pump, args=(one, other), daemon=True).start()
+
+    def _connect(self) -> socket.socket:
+        if isinstance(self._to, int):
+            return socket.create_connection(("127.0.0.1", self._to))
+        server = socket.socket(socket.AF_UNIX)
+        server.connect(self._to)
+        return server
 
     def _pump(self, one: socket.socket, other: socket.socket) -> None:
         with contextlib.suppress(OSError):

@@ -1,0 +1,86 @@
+"""Jobs on services that are killed again and again, none lost and none doubled: `python -m tests.bench.job_kills`."""
+
+from __future__ import annotations
+
+import argparse
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from contextlib import ExitStack
+from pathlib import Path
+
+from teachpath.io.store.pages import PageRequest
+from tests.contract.job_program import job_service
+from tests.contract.rows import a_job
+from tests.postgres import serving
+
+TASK = "lift"
+REPORTS = 15  # of each job, 20 ms apart
+PAUSE = 0.5, 3.0  # [s] between two kills, at least and at most
+
+
+class Program:
+    """A service in a process of its own, which is started anew after each kill."""
+
+    def __init__(self, url: str, folder: Path) -> None:
+        self._command = [sys.executable, "-m", "tests.contract.job_program", url, str(folder)]
+        self._start()
+
+    def _start(self) -> None:
+        self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
+
+    def wait_for_start(self) -> None:
+        assert self._process.stdout is not None
+        self._process.stdout.readline()
+
+    def kill(self) -> None:
+        self._process.kill()
+        self._process.wait()
+        assert self._process.stdout is not None
+        self._process.stdout.close()
+
+    def kill_and_restart(self) -> None:
+        self.kill()
+        self._start()
+
+
+def main() -> None:
+    """Kill services while they do jobs, and print what became of every job."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--jobs", type=int, default=200)
+    parser.add_argument("--services", type=int, default=4)
+    parser.add_argument("--seed", type=int, default=1)
+    wanted = parser.parse_args()
+    chance, kills, began = random.Random(wanted.seed), 0, time.monotonic()
+    with serving() as server, tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        url = server.new_url()
+        store, jobs = job_service(url, str(Path(folder) / "asked"))  # which does none of them
+        stack.callback(store.close)
+        stack.callback(jobs.stop)
+        store.ensure_task(TASK, scene="paper", calibration="identity")
+        programs = [Program(url, Path(folder) / str(number)) for number in range(wanted.services)]
+        for program in programs:
+            stack.callback(program.kill)
+            program.wait_for_start()
+        begun = [a_job(f"learn-{n}", task=TASK, request={"reports": REPORTS}) for n in range(wanted.jobs)]
+        for job in begun:
+            store.add_job(job)
+        while store.jobs(unfinished=True):
+            time.sleep(chance.uniform(*PAUSE))
+            chance.choice(programs).kill_and_restart()
+            kills += 1
+        ended = [store.job(job.id) for job in begun]
+        runs = sorted(run.id for run in store.lists.runs(TASK, PageRequest(limit=500)).entries)
+    states = Counter(job.state.value for job in ended)
+    print(f"{wanted.jobs} jobs on {wanted.services} services, {kills} kills, {time.monotonic() - began:.0f} s")
+    print(f"ended: {dict(states)}; {len(runs)} runs")
+    print(f"each run is that of one job: {runs == sorted(job.outcome for job in ended)}")
+    if set(states) != {"succeeded"} or runs != sorted(job.outcome for job in ended):
+        sys.exit("a job was lost or done twice")
+
+
+if __name__ == "__main__":
+    main()
