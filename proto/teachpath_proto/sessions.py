@@ -13,12 +13,14 @@ from teachpath_proto.logins import Login
 # Nothing leaves the machine unasked: no multicast, no gossip. Nor do messages go through shared memory: to prepare it
 # at the first long message makes setpoints late, and a process that is killed leaves its files behind. A session that
 # gets no turn for long stays open: an executor without one took it for the end of the arm's driver. Whoever ends or
-# dies is gone at once all the same, and silence is noticed by those who listen.
+# dies is gone at once all the same, and silence is noticed by those who listen. Setpoints are dropped where a line is
+# full: they find room for more than a second of them, 16 times 64 KiB.
 ALONE: Mapping[str, object] = {
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
     "transport/shared_memory/enabled": False,
     "transport/link/tx/lease": 60_000,
+    "transport/link/tx/queue/size/real_time": 16,
 }
 TLS = "transport/link/tls"
 

@@ -26,6 +26,7 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.unasked_motion import UnaskedMotionDetector, moved_since_order
 from teachpath.io import wire
 from teachpath.io.bus import Bus, Handle
+from teachpath.io.bus_delivery import Delivery
 from teachpath.logs import continue_request
 from teachpath.records import Array, Command, ExecutorStatus, JournalEntry
 from teachpath.time_source import TimeSource
@@ -115,11 +116,11 @@ class CommandHandler:
         return self.current is None or self.current.is_resting
 
     def write_journal(self, who: str, verb: str, answer: str, *, execution: str | None = None) -> None:
-        """Publish an entry of the journal: who did what to an execution, by default the newest, and the answer."""
+        """Publish an entry of the journal, and never wait: who did what to an execution, and the answer."""
         if execution is None:
             execution = self.current.id if self.current else ""
         entry = JournalEntry(self._time.wall_ns(), who, verb, execution, answer)
-        self._bus.publish(self._keys.executor_journal, wire.encode_entry(entry))
+        self._bus.publish(self._keys.executor_journal, wire.encode_entry(entry), delivery=Delivery.DROPS_LAST)
 
     def answer(self, payload: bytes) -> bytes:
         """Answer a command with the status; raise the reason when it is refused."""

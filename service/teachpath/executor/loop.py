@@ -1,7 +1,7 @@
 """The executor: streams the setpoints of one execution at a time to the arm, and obeys the operator meanwhile.
 
-It runs in a process of its own. The control loop never raises in mid-motion: whatever goes wrong brings the arm to rest
-on its path, with a reason in the status.
+It runs in a process of its own. The control loop never raises in mid-motion, and waits for nobody who reads nothing:
+whatever goes wrong brings the arm to rest on its path, with a reason in the status.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.unasked_motion import UnaskedMotionDetector, moved_since_order
 from teachpath.io import wire
 from teachpath.io.bus import Bus
+from teachpath.io.bus_delivery import Delivery
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.governor import warm_up
 from teachpath.motion.execution.hand_kinematics import warm_up_hand
@@ -39,8 +40,7 @@ log: logging.Logger = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods in one cycle of the loop while no execution is under way
 UNASKED_MOTION: Final = "unasked motion"  # in the journal, where verbs of commands stand
-# [Hz] at which the status is published at most while no execution is under way. The service takes an executor for gone
-# after a second.
+# [Hz] of the status at most while no execution is under way; an executor that is silent for a second counts as gone
 IDLE_STATUS_RATE: Final = 4.0
 
 
@@ -152,7 +152,8 @@ class Executor:
                 current.skip_period()
             else:
                 setpoint = current.step(due, self._time.wall_ns())
-                self._bus.publish(self._keys.setpoint(self._robot), wire.encode_setpoint(setpoint))
+                payload = wire.encode_setpoint(setpoint)
+                self._bus.publish(self._keys.setpoint(self._robot), payload, delivery=Delivery.DROPS)
                 current.program.advance_planning()
             self._unasked.forget()
         else:
@@ -285,7 +286,7 @@ class Executor:
         if not is_due and state == self._published[:3] and due - self._published[3] < 1e9 / rate:
             return
         self._published = (*state, due)
-        self._bus.publish(self._keys.executor_status, wire.encode_status(self._status()))
+        self._bus.publish(self._keys.executor_status, wire.encode_status(self._status()), delivery=Delivery.DROPS)
 
     def _status(self) -> ExecutorStatus:
         current, lease = self._command_handler.current, self._command_handler.lease.public_view()

@@ -20,6 +20,7 @@ import zenoh.ext
 from teachpath.errors import TeachpathError, Unanswered, Unreachable, UnusableSettings
 from teachpath.io.bus_access import CACHE_KEYS, BusAccess, listening_config
 from teachpath.io.bus_config import read_bus_config
+from teachpath.io.bus_delivery import WAITS, Delivery
 from teachpath.io.bus_errors import pack_error, raise_again
 from teachpath.io.bus_settings import BusSettings
 from teachpath.io.declaration import Declaration
@@ -28,6 +29,11 @@ from teachpath_proto.sessions import joining, listening, open_session
 
 SESSION_ID = re.compile(rb"[0-9a-f]{1,32}")
 TIMED_OUT = b"Timeout"  # what Zenoh says when those who serve a key have not answered in time
+SENDING: dict[Delivery, dict[str, Any]] = {  # each priority has a queue of its own
+    WAITS: {"congestion_control": zenoh.CongestionControl.BLOCK},
+    Delivery.DROPS: {"congestion_control": zenoh.CongestionControl.DROP, "priority": zenoh.Priority.REAL_TIME},
+    Delivery.DROPS_LAST: {"congestion_control": zenoh.CongestionControl.DROP, "priority": zenoh.Priority.DATA_HIGH},
+}
 
 Receive = Callable[[str, bytes], None]
 ReceiveWithSource = Callable[[str, bytes, str], None]
@@ -46,7 +52,7 @@ class Handle(Protocol):
 class Bus(Protocol):
     """What every kind of bus can do."""
 
-    def publish(self, key: str, payload: bytes, *, source: str | None = None) -> None:
+    def publish(self, key: str, payload: bytes, *, source: str | None = None, delivery: Delivery = WAITS) -> None:
         """Send `payload` to all subscribers of `key`; `source` is who sends behind this session, None: itself."""
 
     def subscribe(self, key: str, receive: Receive) -> Handle:
@@ -157,16 +163,16 @@ class ZenohBus:
             raise Unreachable(f"no Zenoh session at {place} ({error})") from error
         self._source = str(self._session.zid())
         self._lock = threading.Lock()
-        self._publishers: dict[str, Any] = {}
+        self._publishers: dict[tuple[str, Delivery], Any] = {}
         self._handles: list[Handle] = []
 
-    def publish(self, key: str, payload: bytes, *, source: str | None = None) -> None:
-        """Send `payload` to all subscribers of `key`; waits while the way out is full. See `Bus`."""
+    def publish(self, key: str, payload: bytes, *, source: str | None = None, delivery: Delivery = WAITS) -> None:
+        """Send `payload` to all subscribers of `key`; see `Bus`."""
         with self._lock:
-            publisher = self._publishers.get(key)
+            publisher = self._publishers.get((key, delivery))
             if publisher is None:
-                publisher = self._session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
-                self._publishers[key] = publisher
+                publisher = self._session.declare_publisher(key, **SENDING[delivery])
+                self._publishers[key, delivery] = publisher
         publisher.put(payload, attachment=self._source if source is None else source)
 
     def subscribe(self, key: str, receive: Receive) -> Handle:

@@ -9,6 +9,7 @@ from typing import Final
 
 from teachpath.errors import Unreachable
 from teachpath.io.bus import Answer, Changed, Handle, Missed, Receive, ReceiveWithSource
+from teachpath.io.bus_delivery import WAITS, Delivery
 from teachpath.io.declaration import Declaration
 
 CACHE_SIZE: Final = 1024  # payloads of each key, as a client's publisher keeps them
@@ -26,8 +27,11 @@ class MemoryBus:
         self._caches: dict[str, deque[bytes]] = {}
         self._watchers: dict[Declaration, tuple[re.Pattern[str], Changed]] = {}
 
-    def publish(self, key: str, payload: bytes, *, source: str | None = None) -> None:
-        """Call the receivers of `key` in this thread, in the order of their subscriptions, as from `source`."""
+    def publish(self, key: str, payload: bytes, *, source: str | None = None, delivery: Delivery = WAITS) -> None:
+        """Call the receivers of `key` in this thread, in the order of their subscriptions, as from `source`.
+
+        Nothing is ever full here, so `delivery` makes no difference.
+        """
         with self._lock:
             self._caches.setdefault(key, deque(maxlen=CACHE_SIZE)).append(payload)
             receivers = [receive for pattern, receive in self._receivers.values() if pattern.fullmatch(key)]

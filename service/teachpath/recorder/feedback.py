@@ -1,6 +1,6 @@
 """Feedback to the hand while it demonstrates: phase, countdown, takes and verdicts, on a thread of its own.
 
-A receiver may be slow or stuck; the recording thread never waits for it.
+A receiver may be slow or stuck; neither the recording thread nor the other hands wait for it.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 
 from teachpath.errors import TeachpathError
 from teachpath.io.bus import Bus
+from teachpath.io.bus_delivery import Delivery
 from teachpath.io.wire import encode_feedback
 from teachpath.periodic_thread import PeriodicThread
 from teachpath.records import Demonstration, RecordingStatus
@@ -73,7 +74,7 @@ class FeedbackPublisher:
                 self._publish(tracker, message)
 
     def _publish(self, tracker: str, message: bytes) -> None:
-        self._bus.publish(self._keys.feedback(tracker), message)
+        self._bus.publish(self._keys.feedback(tracker), message, delivery=Delivery.DROPS)
 
     def _message(self, status: RecordingStatus) -> bytes:
         return encode_feedback(status, self._newest(status))

@@ -16,6 +16,7 @@ import numpy as np
 from teachpath.errors import Conflict, UnusableInput
 from teachpath.io import documents, wire
 from teachpath.io.bus import Bus
+from teachpath.io.bus_delivery import Delivery
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
 from teachpath.realtime import SIMULATOR_PRIORITY, realtime_threads, request_realtime
@@ -169,7 +170,8 @@ class Simulator:
         self._wake.set()
 
     def _publish(self, state: JointState) -> None:
-        self._bus.publish(self._keys.state(self._robot), wire.encode_state(state))
+        payload = wire.encode_state(state)
+        self._bus.publish(self._keys.state(self._robot), payload, delivery=Delivery.DROPS)  # an arm never waits
 
     def _build(self, scene: Scene, position: Sequence[float]) -> None:
         settings = self._settings
