@@ -26,10 +26,10 @@ def sample_fault(
         device_ns: the device's clock [ns since the Unix epoch].
     """
     x, y, z = position
-    if not math.isfinite(x + y + z):
-        return f"position {tuple(position)} is not finite"
     limit = MAX_COORDINATE
     if not (-limit <= x <= limit and -limit <= y <= limit and -limit <= z <= limit):
+        if not math.isfinite(x + y + z):
+            return f"position {tuple(position)} is not finite"
         return f"position {tuple(position)} is over {limit:g} m away; are its units metres?"
     if len(flexions) not in FLEXION_COUNTS:
         return f"{len(flexions)} flexions; a glove has 18 or 22, or send none"

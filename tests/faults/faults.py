@@ -106,7 +106,7 @@ def refuse(stream: Stream, rng: np.random.Generator, count: float) -> Stream:
 def untrack(stream: Stream, rng: np.random.Generator, count: float) -> Stream:
     """Lose sight of the hand."""
     chosen = _chosen(stream, rng, count)
-    return _mapped(stream, lambda i, e: replace(e, sample=replace(e.sample, tracked=i not in chosen)))
+    return _mapped(stream, lambda i, e: replace(e, sample=e.sample._replace(tracked=i not in chosen)))
 
 
 def freeze(stream: Stream, rng: np.random.Generator, seconds: float) -> Stream:
@@ -119,7 +119,7 @@ def freeze(stream: Stream, rng: np.random.Generator, seconds: float) -> Stream:
     pose = stream.events[first].sample.position
     return _mapped(
         stream,
-        lambda i, e: replace(e, sample=replace(e.sample, position=pose)) if first < i < first + length else e,
+        lambda i, e: replace(e, sample=e.sample._replace(position=pose)) if first < i < first + length else e,
     )
 
 
@@ -127,7 +127,7 @@ def stale(stream: Stream, _rng: np.random.Generator, times: float) -> Stream:
     """Send each pose several times, as from a tracker that measures more rarely."""
     poses = [e.sample.position for e in stream.events]
     return _mapped(
-        stream, lambda i, e: replace(e, sample=replace(e.sample, position=poses[i // int(times) * int(times)]))
+        stream, lambda i, e: replace(e, sample=e.sample._replace(position=poses[i // int(times) * int(times)]))
     )
 
 
@@ -137,8 +137,7 @@ def share_name(stream: Stream, rng: np.random.Generator, ahead: float) -> Stream
     for event in stream.events:
         x, y, z = event.sample.position
         stamp = event.sample.device_ns + PERIOD_NS // 2 + int(rng.integers(0, 1000))
-        other = replace(
-            event.sample,
+        other = event.sample._replace(
             sequence=event.sample.sequence + int(ahead),
             device_ns=stamp,
             receive_ns=event.sample.receive_ns + PERIOD_NS // 2,
@@ -153,7 +152,7 @@ def mix_hands(stream: Stream, _rng: np.random.Generator, apart: float) -> Stream
 
     def other(i: int, event: Event) -> Event:
         x, y, z = event.sample.position
-        return replace(event, sample=replace(event.sample, position=(x, y + apart * (i % 2), z)))
+        return replace(event, sample=event.sample._replace(position=(x, y + apart * (i % 2), z)))
 
     return _mapped(stream, other)
 
@@ -164,7 +163,7 @@ def step_clock(stream: Stream, rng: np.random.Generator, seconds: float) -> Stre
     step = round(seconds * 1e9)
     return _mapped(
         stream,
-        lambda i, e: replace(e, sample=replace(e.sample, device_ns=e.sample.device_ns + step)) if i >= at else e,
+        lambda i, e: replace(e, sample=e.sample._replace(device_ns=e.sample.device_ns + step)) if i >= at else e,
     )
 
 
@@ -175,7 +174,7 @@ def flap(stream: Stream, rng: np.random.Generator, times: float) -> Stream:
     at = int(rng.choice(carried[: len(carried) - length]))
     opened = {i for k in range(int(times)) for i in (at + 4 * k, at + 4 * k + 1)}
     return _mapped(
-        stream, lambda i, e: replace(e, sample=replace(e.sample, flexions=(OPEN,) * 22)) if i in opened else e
+        stream, lambda i, e: replace(e, sample=e.sample._replace(flexions=(OPEN,) * 22)) if i in opened else e
     )
 
 
@@ -185,7 +184,7 @@ def let_go(stream: Stream, rng: np.random.Generator, seconds: float) -> Stream:
     at = int(rng.choice(carried[: len(carried) - length]))
     return _mapped(
         stream,
-        lambda i, e: replace(e, sample=replace(e.sample, flexions=(OPEN,) * 22)) if at <= i < at + length else e,
+        lambda i, e: replace(e, sample=e.sample._replace(flexions=(OPEN,) * 22)) if at <= i < at + length else e,
     )
 
 

@@ -124,7 +124,7 @@ def changed(stream: Stream, events: list[Event]) -> Stream:
     newest, received = 0, []
     for event in events:
         newest = max(newest, event.sample.receive_ns)
-        received.append(replace(event, sample=replace(event.sample, receive_ns=newest)))
+        received.append(replace(event, sample=event.sample._replace(receive_ns=newest)))
     return replace(stream, events=tuple(received))
 
 

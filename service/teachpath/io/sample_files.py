@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import replace
 
 from teachpath.errors import UnusableInput, UnusableRecording, UnusableSample
 from teachpath.io.documents import decode_demonstration, encode
@@ -89,4 +88,4 @@ def _sample(row: list[str], count: int, tracker: str, where: str) -> Sample:
     except (ValueError, UnusableSample) as error:
         raise UnusableRecording(f"{where}: {error}") from None
     # It was of unit length when it was written; to make it so again would change its last bit.
-    return replace(sample, orientation=orientation)
+    return sample._replace(orientation=orientation)

@@ -67,7 +67,8 @@ class FeedbackPublisher:
                 self._publish(tracker, self._message(ended))
         for tracker, status in statuses.items():
             last, at, message = self._published.get(tracker, (None, now, b""))
-            changed = last is None or _visible(last) != _visible(status)
+            # The one that was published is the same object while nothing has changed.
+            changed = last is not status and (last is None or _visible(last) != _visible(status))
             if changed or now - at >= REPEAT_INTERVAL:
                 message = self._message(status) if changed else message
                 self._published[tracker] = (status, now, message)

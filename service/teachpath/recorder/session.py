@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from teachpath.io.store.store import Store
 from teachpath.recorder.closed_take import ClosedTake, Completer, DirectCompleter
+from teachpath.recorder.hand_commands import HandCommands
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.take import FinishedTake, Take, TakeOutcome
 from teachpath.recording.arrival import Arrival
 from teachpath.recording.demonstration import object_pose, point_to_world
-from teachpath.recording.fist_gesture import FistGesture
-from teachpath.recording.phases import TOGGLE_BUTTON, Segmenter, TransportSpan, hand_closure
+from teachpath.recording.phases import Segmenter, TransportSpan, hand_closure
 from teachpath.recording.reversed_order import ReversedOrder
 from teachpath.recording.settings import RecordingSettings
 from teachpath.recording.state_machine import RecordingStateMachine
 from teachpath.recording.stream_statistics import StreamCounter
-from teachpath.records import FistCommand, HandState, Phase, RecordingState, RecordingStatus, Sample, Vector
+from teachpath.records import HandState, Phase, RecordingState, RecordingStatus, Sample, Vector
 
 
 class RecordingSession:
@@ -61,14 +62,13 @@ class RecordingSession:
         self.last_flush: float = clock()
         self._idle = 0
         self._is_torn = False
-        self._pedal_used = False
-        self._discard_requested = False
-        self._buttons = 0
         self._take_number = 0
         self._newest: Sample | None = None
         self._take = self._new_take()
         self._segmenter = Segmenter(settings, self._object.expected)
-        self._gesture = FistGesture(settings, self._object.expected)
+        self._commands = HandCommands(settings, self._object.expected)
+        self._status: RecordingStatus | None = None  # newest, without hand and statistics
+        self._status_values: tuple[object, ...] = ()
 
     @property
     def task(self) -> str:
@@ -97,23 +97,23 @@ class RecordingSession:
 
     def add(self, sample: Sample, payload: bytes = b"") -> FinishedTake | None:
         """Write one sample, `payload` as it came; return the demonstration that it completes."""
-        arrival = self.counter.observe(sample)
+        counter, machine = self.counter, self._state_machine
+        arrival = counter.observe(sample)
         if self._order.observe(sample):
-            self.counter.note(self._order.hint)
+            counter.note(self._order.hint)
         fresh = arrival is Arrival.IN_ORDER
-        if self.counter.has_restarted:
+        if counter.has_restarted:
             self._idle += 1
             return self.interrupt("the device began to count anew in mid-take")
-        self._state_machine.on_sample()
-        if fresh:
-            self._newest = sample
+        machine.on_sample()
         position = self._to_world(sample.position)
         if fresh:
+            self._newest = sample
             self._follow_commands(sample, position)
-        if self.state is RecordingState.COUNTDOWN and self._state_machine.poll_countdown(self._clock()):
+        if machine.state is RecordingState.COUNTDOWN and machine.poll_countdown(self._clock()):
             self._drop_take()
-        past = arrival is not Arrival.CONFLICTING and self.counter.is_before_interval(sample.sequence)
-        if past or not self.state.is_writing:
+        past = arrival is not Arrival.CONFLICTING and counter.is_before_interval(sample.sequence)
+        if past or not machine.state.is_writing:
             self._idle += 1
             return None
         if not fresh:
@@ -184,27 +184,29 @@ class RecordingSession:
 
     def pop_discard_request(self) -> bool:
         """Return, once, whether a fist has commanded to discard the last demonstration."""
-        requested, self._discard_requested = self._discard_requested, False
-        return requested
+        return self._commands.pop_discard_request()
 
     def status(self, *, with_hand: bool = False, with_statistics: bool = False) -> RecordingStatus:
         """Return a snapshot; hand and statistics cost more than all the rest, and are left out unless asked for."""
-        return RecordingStatus(
-            task=self.task,
-            tracker=self.tracker,
-            state=self.state,
-            phase=self._segmenter.phase,
-            demonstrations=tuple(self.demonstrations),
-            countdown_left=self._state_machine.countdown_left(self._clock()),
-            takes_left=self._state_machine.takes_left,
-            pending_command=self._gesture.pending_command,
-            pedal_used=self._pedal_used,
-            idle=self._idle,
-            hint=self._order.hint or self._segmenter.hint,
-            carried=self._object.shape(grasped=self._segmenter.phase.has_object),
-            hand=self._hand() if with_hand else None,
-            statistics=self.counter.statistics() if with_statistics else None,
-        )
+        plain = self._plain_status()
+        if not (with_hand or with_statistics):
+            return plain
+        hand, statistics = self._hand() if with_hand else None, self.counter.statistics() if with_statistics else None
+        return replace(plain, hand=hand, statistics=statistics)
+
+    def _plain_status(self) -> RecordingStatus:
+        """Return the status, made anew only when it has changed: of hundreds of recordings it is asked often."""
+        phase, machine, commands = self._segmenter.phase, self._state_machine, self._commands
+        carried, hint = self._object.shape(grasped=phase.has_object), self._order.hint or self._segmenter.hint
+        state, demonstrations = (machine.state, machine.countdown_left(self._clock())), tuple(self.demonstrations)
+        rest = (machine.takes_left, commands.pending, commands.pedal_used, self._idle, carried)
+        values = (state, phase, demonstrations, rest, hint)
+        if self._status is None or values != self._status_values:
+            self._status_values = values
+            self._status = RecordingStatus(
+                self.task, self.tracker, state[0], phase, demonstrations, state[1], *rest, hint=hint
+            )
+        return self._status
 
     def _hand(self) -> HandState | None:
         newest = self._newest
@@ -224,12 +226,7 @@ class RecordingSession:
 
     def _follow_commands(self, sample: Sample, position: Vector) -> None:
         """Do what the operator commands with pedal or fist."""
-        pressed = sample.buttons & TOGGLE_BUTTON and not self._buttons & TOGGLE_BUTTON
-        self._buttons = sample.buttons
-        self._pedal_used |= bool(pressed)
-        command = self._gesture.push(sample, position, carrying=self.is_carrying)
-        self._discard_requested |= command is FistCommand.DISCARD
-        if pressed or command is FistCommand.TOGGLE:
+        if self._commands.push(sample, position, carrying=self.is_carrying):
             if self.state in (RecordingState.RECORDING, RecordingState.COUNTDOWN):
                 self.pause()
             else:
@@ -238,7 +235,8 @@ class RecordingSession:
     def _follow_phases(self, sample: Sample, payload: bytes, position: Vector) -> FinishedTake | None:
         before = self._segmenter.phase
         if not before.has_object and self._object.has_moved():
-            self._segmenter.carried = self._gesture.carried = self._object.expected
+            self._segmenter.carried = self._object.expected
+            self._commands.on_object_moved(self._object.expected)
         cut = self._segmenter.push(sample, position)
         phase = self._segmenter.phase
         if cut is not None and phase is Phase.GRASP:  # the first sample of the next take

@@ -95,6 +95,6 @@ class SuspendableSession(RecordingSession):
 
     def _follow_commands(self, sample: Sample, position: Vector) -> None:
         if self._is_replaying:  # they were followed then
-            self._buttons = sample.buttons
+            self._commands.skip(sample)
         else:
             super()._follow_commands(sample, position)

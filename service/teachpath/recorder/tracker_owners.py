@@ -25,19 +25,19 @@ class TrackerOwners:
         self._keys = keys
         self._clock = clock
         self._lock = threading.Lock()
-        self._owners: dict[str, tuple[str, float]] = {}  # by the tracker's name: session, and time of its last sample
+        self._owners: dict[str, tuple[str, float]] = {}  # by the key of the samples: session, time of its last sample
         self._strangers: dict[str, float] = {}  # by the name: when a session that does not own it has sent last
 
     def owner(self, tracker: str) -> str:
         """Return the session that a tracker's name belongs to; empty when nobody sends under it, or does not say."""
         with self._lock:
-            session, last = self._owners.get(tracker, ("", -SILENCE_TIMEOUT))
+            session, last = self._owners.get(self._keys.samples(tracker), ("", -SILENCE_TIMEOUT))
             return session if self._clock() - last < SILENCE_TIMEOUT else ""
 
     def require_named(self, tracker: str) -> None:
         """Raise Conflict where samples come under a tracker's name that name no session, so that nobody owns it."""
         with self._lock:
-            session, last = self._owners.get(tracker, ("somebody", 0.0))
+            session, last = self._owners.get(self._keys.samples(tracker), ("somebody", 0.0))
             if not session and self._clock() - last < SILENCE_TIMEOUT:
                 raise Conflict(anonymous_refusal(tracker))
 
@@ -53,11 +53,11 @@ class TrackerOwners:
 
     def on_sample(self, key: str, _: bytes, source: str) -> None:
         """Take note that a session sent a sample."""
-        tracker, now = self._keys.tracker_of(key), self._clock()
+        now = self._clock()
         with self._lock:
-            owner, last = self._owners.get(tracker, (source, now))
+            owner, last = self._owners.get(key, (source, now))
             if source == owner or not owner or now - last > SILENCE_TIMEOUT:
-                if tracker in self._owners or len(self._owners) < MAX_NAMES:
-                    self._owners[tracker] = (source, now)
+                if key in self._owners or len(self._owners) < MAX_NAMES:
+                    self._owners[key] = (source, now)
             else:
-                self._strangers[tracker] = now
+                self._strangers[self._keys.tracker_of(key)] = now

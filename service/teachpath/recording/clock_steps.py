@@ -58,7 +58,10 @@ class ClockSteps:
             self._add_transit(sample)
             return None
         device, receive = sample.device_ns - last.device_ns, sample.receive_ns - last.receive_ns
-        jump = self._jump(sample, numbers, device, receive)
+        if 0 < device <= self._limit_ns:  # nearly every step: it needs no explanation
+            jump, self._stalled_ns = None, 0.0
+        else:
+            jump = self._jump(sample, numbers, device, receive)
         if jump is not None:
             self.clock_jumps += 1
             self._forget_transits()
@@ -91,7 +94,9 @@ class ClockSteps:
         return rate < 2.0 and transit >= min(self._least, self._least_before) - self._limit_ns
 
     def _add_transit(self, sample: Sample) -> None:
-        self._least = min(self._least, sample.receive_ns - sample.device_ns)
+        transit = sample.receive_ns - sample.device_ns
+        if transit < self._least:
+            self._least = transit
         self._transits += 1
         if self._transits == TRANSIT_WINDOW:  # a clock that drifts is compared with its own last minutes only
             self._least_before, self._least, self._transits = self._least, float("inf"), 0

@@ -82,10 +82,11 @@ class Segmenter:
         """
         index, self._count = self._count, self._count + 1
         was_closed = self._closed
-        self._closed = hand_closure(sample) > (self._settings.open_at if was_closed else self._settings.close_at)
+        closure = hand_closure(sample)
+        self._closed = closure > (self._settings.open_at if was_closed else self._settings.close_at)
         grasps = self._closed and not was_closed and self._near(position)
         if self.phase is Phase.REACH:
-            self._advise(sample, position, closes=self._closed and not was_closed)
+            self._advise(sample, position, closure, closes=self._closed and not was_closed)
             if grasps:
                 self._take_hold(index, position)
         elif self.phase is Phase.GRASP:
@@ -117,7 +118,7 @@ class Segmenter:
     def _take_hold(self, index: int, position: Vector) -> None:
         self.phase, self._grasp, self._place, self.hint = Phase.GRASP, index, position, ""
 
-    def _advise(self, sample: Sample, position: Vector, *, closes: bool) -> None:
+    def _advise(self, sample: Sample, position: Vector, closure: float, *, closes: bool) -> None:
         """Say why the hand grasps nothing: too far from the object, or not closed enough."""
         if closes and self.carried is not None:
             distance, limit = math.dist(position, self.carried), self._settings.grasp_radius
@@ -126,7 +127,6 @@ class Segmenter:
             )
             if distance > FAR_AWAY:
                 self.hint += "; if it was there, measure the calibration anew or mend the object's place in the scene"
-        closure = hand_closure(sample)
         if not (self._settings.open_at < closure <= self._settings.close_at and self._near(position)):
             self._half_closed_ns = 0
         elif not self._half_closed_ns:

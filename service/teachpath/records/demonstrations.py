@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -42,8 +42,7 @@ class Verdict(StrEnum):
     REJECT = "reject"  # kept, but not learned from
 
 
-@dataclass(frozen=True, slots=True)
-class Sample:
+class Sample(NamedTuple):  # which is made in a fifth of the time of a frozen dataclass
     """One reading of glove and tracker, checked.
 
     `position` [m] and `orientation` (None when not measured) are in the tracker frame; `flexions` run from 0 (open)

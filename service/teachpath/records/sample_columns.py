@@ -131,7 +131,7 @@ class SampleColumns(Sequence[Sample]):
 
 ORDERED = tuple(field.name for field in fields(SampleColumns))[1:]
 COLUMNS = frozenset(ORDERED)
-VALUES = tuple(field.name for field in fields(Sample))[1:]
+VALUES = Sample._fields[1:]
 
 
 def _padded(flexions: NDArray[Any], width: int) -> NDArray[Any]:

@@ -12,7 +12,8 @@ from mcap.records import Chunk, ChunkIndex, Footer, Message, MessageIndex
 from mcap.stream_reader import StreamReader, get_chunk_data_stream
 from mcap.writer import Writer
 
-from teachpath.io.store.mcap_file import FOOTER, MAGIC, McapFile, MessageBatch
+from teachpath.io.store.mcap_file import FOOTER, MAGIC, McapFile
+from teachpath.io.store.mcap_messages import MessageBatch
 from teachpath_proto import tracker_pb2
 
 KINDS: list[type[ProtobufMessage]] = [tracker_pb2.HandSample, tracker_pb2.Vector3]

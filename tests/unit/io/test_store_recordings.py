@@ -1,5 +1,4 @@
 import math
-from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -87,7 +86,7 @@ def test_parts_of_a_recording_are_kept_whether_the_hand_is_tracked_or_not(
     written: list[Sample] = []
     for size, tracked in parts:
         for sample in islice(samples, size):
-            written.append(replace(sample, tracked=tracked))
+            written.append(sample._replace(tracked=tracked))
             begun.write(written[-1])
         begun.flush()
     begun.finish({})
@@ -170,7 +169,7 @@ def test_viewers_find_the_hand_and_its_frame_beside_the_samples(tmp_path: Path) 
     lab = Calibration("lab", 0.5, quarter, (1.0, 2.0, 3.0))
     begun = Recordings(tmp_path).begin("d", RecordingHeader("lift", "glove", lab))
     for i, sample in enumerate(SAMPLES):
-        begun.write(replace(sample, tracked=i % 10 != 0))
+        begun.write(sample._replace(tracked=i % 10 != 0))
     file = begun.finish({})
     with file.open("rb") as stream:
         drawn = [

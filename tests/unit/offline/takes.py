@@ -1,7 +1,6 @@
 """Stored takes to export: whole, lossy, torn, without a glove, without orientations."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -23,8 +22,7 @@ def exact(samples: Sequence[Sample]) -> list[Sample]:
     """Return samples whose numbers need every digit, as the wire carries them: flexions in single precision."""
     random = np.random.default_rng(1)
     return [
-        replace(
-            s,
+        s._replace(
             position=tuple((np.array(s.position) + random.normal(0.0, 1e-3, 3)).tolist()),
             flexions=tuple(np.float32(s.flexions).tolist()),
             receive_ns=s.receive_ns + int(random.integers(0, 500_000)),
@@ -43,13 +41,13 @@ def lossy() -> list[Sample]:
     del shown[60]
     shown.insert(70, shown[69])
     shown[40], shown[41] = shown[41], shown[40]
-    return [replace(s, tracked=i != 50) for i, s in enumerate(shown)]
+    return [s._replace(tracked=i != 50) for i, s in enumerate(shown)]
 
 
 def bare() -> list[Sample]:
     """Show with a button, without a glove and orientations."""
     return [
-        replace(s, flexions=(), orientation=None, buttons=GRASP_BUTTON if s.flexions[0] > 0.5 else 0)
+        s._replace(flexions=(), orientation=None, buttons=GRASP_BUTTON if s.flexions[0] > 0.5 else 0)
         for s in exact(demonstration())
     ]
 

@@ -1,5 +1,4 @@
 import threading
-from dataclasses import replace
 
 import pytest
 
@@ -176,7 +175,7 @@ def test_a_grasp_that_ends_a_take_is_the_first_sample_of_the_next_in_all_statist
     bench.begin()
     carry = demonstration(transport=40)[20:75]  # no rest: the hand comes back and takes the object again
     stream = [
-        replace(s, sequence=n, device_ns=START_NS + n * PERIOD_NS, receive_ns=START_NS + n * PERIOD_NS)
+        s._replace(sequence=n, device_ns=START_NS + n * PERIOD_NS, receive_ns=START_NS + n * PERIOD_NS)
         for n, s in enumerate([*demonstration()[:20], *carry, *carry, *demonstration(transport=40)[20:]], 1)
     ]
     bench.send(stream)

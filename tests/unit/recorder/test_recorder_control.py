@@ -1,7 +1,5 @@
 """What operators and trackers can do to a recording: pause, pedal, come, go, fall silent, count anew."""
 
-from dataclasses import replace
-
 import pytest
 
 from teachpath.errors import Conflict, NotFound, UnusableInput
@@ -61,7 +59,7 @@ def test_a_pause_while_something_is_carried_waits_for_the_end_of_the_take(bench:
 
 def test_an_armed_recording_waits_for_the_pedal_and_the_pedal_pauses_again(bench: Bench) -> None:
     def pressed(samples: list[Sample]) -> list[Sample]:
-        return [replace(s, buttons=TOGGLE_BUTTON) if i < 3 else s for i, s in enumerate(samples)]
+        return [s._replace(buttons=TOGGLE_BUTTON) if i < 3 else s for i, s in enumerate(samples)]
 
     bench.begin(armed=True)
     bench.send(demonstration())
@@ -146,7 +144,7 @@ def test_a_client_that_comes_back_within_its_recording_counts_anew(bench: Bench)
     bench.send(demonstration()[:15])
     token.close()
     bench.until(lambda report: report.state == "lost")
-    bench.send([replace(s, device_ns=s.device_ns + 10**10) for s in demonstration()])
+    bench.send([s._replace(device_ns=s.device_ns + 10**10) for s in demonstration()])
     report = bench.end(SHOWN)
     assert (report.received, report.duplicated, len(report.demonstrations)) == (SHOWN + 15, 0, 1)
     assert verdicts(bench) == [("clean", ())]
@@ -185,7 +183,7 @@ def test_a_tracker_that_waits_between_takes_is_not_lost(bench: Bench) -> None:
 def test_two_trackers_of_one_name_make_no_demonstration_that_is_trusted(bench: Bench) -> None:
     bench.begin()
     for one, other in zip(demonstration(), demonstration(at=(0.6, 0.2, 0.7)), strict=True):
-        bench.send([one, replace(other, device_ns=other.device_ns + 3_000_000)])
+        bench.send([one, other._replace(device_ns=other.device_ns + 3_000_000)])
     bench.end(SHOWN)
     assert [verdict for verdict, _ in verdicts(bench)] == ["reject"]
     assert any("two trackers" in note for note in bench.store.demonstrations("lift")[0].statistics.notes)
@@ -194,7 +192,7 @@ def test_two_trackers_of_one_name_make_no_demonstration_that_is_trusted(bench: B
 @pytest.mark.parametrize("away_ns", [10**18, -(10**18), 3600 * 10**9, -3600 * 10**9])
 def test_samples_of_the_past_and_the_future_are_taken_with_their_offset(bench: Bench, away_ns: int) -> None:
     bench.begin()
-    shown = [replace(s, device_ns=s.device_ns + away_ns) for s in demonstration()]
+    shown = [s._replace(device_ns=s.device_ns + away_ns) for s in demonstration()]
     bench.send(shown)
     bench.end(SHOWN)
     (row,) = bench.store.demonstrations("lift")
@@ -204,7 +202,7 @@ def test_samples_of_the_past_and_the_future_are_taken_with_their_offset(bench: B
 
 def test_a_clock_that_jumps_in_mid_take_rejects_it(bench: Bench) -> None:
     bench.begin()
-    bench.send([replace(s, device_ns=s.device_ns - 5 * 10**9 * (i >= 40)) for i, s in enumerate(demonstration())])
+    bench.send([s._replace(device_ns=s.device_ns - 5 * 10**9 * (i >= 40)) for i, s in enumerate(demonstration())])
     assert bench.end(SHOWN).clock_jumps == 1
     assert verdicts(bench) == [("reject", ("the device's clock jumps once",))]
 
@@ -212,7 +210,7 @@ def test_a_clock_that_jumps_in_mid_take_rejects_it(bench: Bench) -> None:
 def test_positions_that_jump_are_left_out_of_what_is_learned(bench: Bench) -> None:
     bench.begin()
     shown = demonstration(transport=60)
-    shown[45] = replace(shown[45], position=(0.0, 0.9, 0.9))
+    shown[45] = shown[45]._replace(position=(0.0, 0.9, 0.9))
     bench.send(shown)
     bench.end(SHOWN + 10)
     (row,) = bench.store.demonstrations("lift")
@@ -247,7 +245,7 @@ def test_a_flood_of_names_is_not_remembered(bench: Bench) -> None:
 def test_a_button_device_lost_in_mid_take_is_a_reject(bench: Bench) -> None:
     token = bench.bus.announce(KEYS.alive("tracker", "glove"))
     bench.begin()
-    held = [replace(s, flexions=(), buttons=GRASP_BUTTON * (s.flexions == CLOSED)) for s in demonstration()]
+    held = [s._replace(flexions=(), buttons=GRASP_BUTTON * (s.flexions == CLOSED)) for s in demonstration()]
     bench.send(held[:60])
     token.close()
     bench.until(lambda report: report.state == "lost")

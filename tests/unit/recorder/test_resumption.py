@@ -3,7 +3,6 @@
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -102,7 +101,7 @@ def test_a_tracker_that_counts_anew_makes_no_take_of_two(bench: Bench) -> None:
     with restarted(bench) as after:
         announce(bench)
         late = START_NS + 60 * 10**9
-        bench.send([replace(s, device_ns=s.device_ns + late - START_NS) for s in stream])
+        bench.send([s._replace(device_ns=s.device_ns + late - START_NS) for s in stream])
         wait_until(lambda: after.recorder.statuses()[0].demonstrations, "the take in the hand has ended")
         after.recorder.wait_for_takes()
         (made,) = after.store.demonstrations("lift")[:1]
@@ -122,7 +121,7 @@ def test_a_tracker_that_does_not_come_back_ends_its_take_and_may_be_recorded_ane
 
 
 def test_who_begins_anew_meanwhile_ends_the_take_that_waits(bench: Bench) -> None:
-    bench.send([replace(s, flexions=(), buttons=int(s.flexions[0] > 0.5)) for s in demonstration()[:40]])
+    bench.send([s._replace(flexions=(), buttons=int(s.flexions[0] > 0.5)) for s in demonstration()[:40]])
     with restarted(bench) as after:
         after.begin(task="other")
         after.recorder.wait_for_takes()

@@ -1,7 +1,6 @@
 """A stream in reverse order makes no demonstration, and the hand is told within a second why."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from tests.faults.streams import PERIOD_NS, RATE, START_NS, shown
 
 def received(samples: list[Sample]) -> list[Sample]:
     """Return samples as they are received, one a period."""
-    return [replace(sample, receive_ns=START_NS + k * PERIOD_NS) for k, sample in enumerate(samples)]
+    return [sample._replace(receive_ns=START_NS + k * PERIOD_NS) for k, sample in enumerate(samples)]
 
 
 def session(store: Store) -> RecordingSession:
@@ -30,7 +29,7 @@ def whole(samples: list[Sample]) -> list[Sample]:
 
 def numbered_anew(samples: list[Sample]) -> list[Sample]:
     """Return them in reverse order, with numbers that rise."""
-    return [replace(sample, sequence=number) for number, sample in enumerate(samples[::-1], 1)]
+    return [sample._replace(sequence=number) for number, sample in enumerate(samples[::-1], 1)]
 
 
 @pytest.mark.parametrize("turned", [whole, numbered_anew])
@@ -75,7 +74,7 @@ def test_samples_that_come_late_or_twice_for_ever_are_not_kept_for_ever(store: S
     count, ns = 1000, round(2 * SETTINGS.longest_reach * 1e9 / 1000)
     for k in range(count):
         number, stamp = first.sequence + count + step * k, START_NS + step * k * ns
-        recording.add(replace(first, sequence=number, device_ns=stamp, receive_ns=START_NS + k * ns))
+        recording.add(first._replace(sequence=number, device_ns=stamp, receive_ns=START_NS + k * ns))
     status = recording.status(with_statistics=True)
     assert status.statistics is not None
     assert status.statistics.received == count

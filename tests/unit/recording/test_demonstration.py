@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -27,8 +25,8 @@ def test_the_object_starts_where_it_stands_and_keeps_its_place_in_the_hand() -> 
 def test_turning_the_hand_swings_the_object_about_it() -> None:
     samples = demonstration()
     half = Rotation.from_rotvec([0, 0, np.pi / 2]).as_quat(scalar_first=True)
-    turned = [*samples[:69], replace(samples[69], orientation=tuple(half.tolist()))]
-    at_rest = [replace(s, position=(0.5, 0.0, 0.5)) for s in turned]
+    turned = [*samples[:69], samples[69]._replace(orientation=tuple(half.tolist()))]
+    at_rest = [s._replace(position=(0.5, 0.0, 0.5)) for s in turned]
     trajectory = object_trajectory(at_rest, CUT, IDENTITY, (0.6, 0.0, 0.5))
     assert np.allclose(trajectory.positions[-1], [0.5, 0.1, 0.5], atol=1e-12)
     assert trajectory.orientations is not None
@@ -54,7 +52,7 @@ def test_a_calibration_is_applied_to_positions_and_turns() -> None:
 
 def test_untracked_samples_are_no_part_of_the_trajectory() -> None:
     samples = demonstration()
-    ghosts = [replace(s, tracked=False, position=(9.0, 9.0, 9.0)) if 40 <= i < 45 else s for i, s in enumerate(samples)]
+    ghosts = [s._replace(tracked=False, position=(9.0, 9.0, 9.0)) if 40 <= i < 45 else s for i, s in enumerate(samples)]
     assert np.abs(object_trajectory(ghosts, CUT, IDENTITY, None).positions).max() < 1.0
     with pytest.raises(UnusableRecording, match="in view"):
-        object_trajectory([replace(s, tracked=False) for s in samples], CUT, IDENTITY, None)
+        object_trajectory([s._replace(tracked=False) for s in samples], CUT, IDENTITY, None)

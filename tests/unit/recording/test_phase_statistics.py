@@ -1,7 +1,5 @@
 """What is learned of a take decides its verdict; what happened on the ways to the object and back is said."""
 
-from dataclasses import replace
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -132,14 +130,14 @@ def test_what_only_the_handshake_told_was_sent_after_all_that_came(opened: bool)
 
 def test_a_clock_that_jumps_while_the_hand_returns_is_said_and_rejects_nothing() -> None:
     for place, word in ((REACH // 2, "repaired"), (REACH + 5, "reject"), (SENT - 5, "repaired")):
-        moved = [replace(s, device_ns=s.device_ns + 10**12 * (s.sequence >= place)) for s in sent()]
+        moved = [s._replace(device_ns=s.device_ns + 10**12 * (s.sequence >= place)) for s in sent()]
         judged = verdict(moved)
         assert judged.verdict == word, place
         assert "clock jumps once" in judged.reasons[0]
 
 
 def test_untracked_samples_and_duplicates_are_said_of_their_part() -> None:
-    samples = [replace(s, tracked=not 5 <= s.sequence < 25) for s in sent()]
+    samples = [s._replace(tracked=not 5 <= s.sequence < 25) for s in sent()]
     samples.insert(SENT - 3, samples[SENT - 4])
     assert verdict(samples).reasons == (
         "while reaching, outside what is learned: 20 samples untracked",

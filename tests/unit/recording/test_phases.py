@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -38,12 +36,12 @@ def test_noise_between_the_thresholds_changes_nothing() -> None:
     random = np.random.default_rng(3)
     steady = demonstration()
     noise = random.normal(0, 0.09, (len(steady), 22))
-    noisy = [replace(s, flexions=tuple(np.clip(s.flexions + n, 0, 1))) for s, n in zip(steady, noise, strict=True)]
+    noisy = [s._replace(flexions=tuple(np.clip(s.flexions + n, 0, 1))) for s, n in zip(steady, noise, strict=True)]
     assert [(c.grasp, c.release) for c in cuts_of(noisy)] == [(c.grasp, c.release) for c in cuts_of(steady)]
 
 
 def test_a_button_grasps_like_a_glove() -> None:
-    held = [replace(s, flexions=(), buttons=GRASP_BUTTON if s.flexions == CLOSED else 0) for s in demonstration()]
+    held = [s._replace(flexions=(), buttons=GRASP_BUTTON if s.flexions == CLOSED else 0) for s in demonstration()]
     assert [(c.grasp, c.release) for c in cuts_of(held)] == [(20, 70)]
 
 

@@ -1,6 +1,5 @@
 """The counts of a steady stream by columns are those of its samples one by one."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 from hypothesis import given
@@ -32,7 +31,7 @@ def test_columns_count_what_samples_count(
     lost: set[int], untracked: set[int], first: int, begin: int, end: int
 ) -> None:
     samples = [
-        replace(sample(n, (0.0, 0.0, 0.0)), sequence=first + n, tracked=n not in untracked)
+        sample(n, (0.0, 0.0, 0.0))._replace(sequence=first + n, tracked=n not in untracked)
         for n in range(SENT)
         if n not in lost
     ]
@@ -47,7 +46,7 @@ def test_columns_count_what_samples_count(
 
 def test_a_clock_that_stands_still_goes_back_or_leaps_is_not_steady() -> None:
     for step in (0, -1, round(LARGEST_STEP * 1e9) + 1):
-        samples = [replace(sample(n, (0.0, 0.0, 0.0)), device_ns=10**10 + step * (n > 5)) for n in range(10)]
+        samples = [sample(n, (0.0, 0.0, 0.0))._replace(device_ns=10**10 + step * (n > 5)) for n in range(10)]
         assert count_steady(samples, [3, 6], LARGEST_STEP) is None
-    same = [sample(1, (0.0, 0.0, 0.0)), replace(sample(1, (0.0, 0.0, 0.0)), device_ns=10**10)]
+    same = [sample(1, (0.0, 0.0, 0.0)), sample(1, (0.0, 0.0, 0.0))._replace(device_ns=10**10)]
     assert count_steady(same, [3, 6], LARGEST_STEP) is None

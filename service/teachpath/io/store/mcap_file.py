@@ -12,11 +12,9 @@ import struct
 import zlib
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any, BinaryIO, Self
 
 import numpy as np
-import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
@@ -36,47 +34,15 @@ from mcap.records import (
 )
 from mcap.stream_reader import StreamReader
 from mcap_protobuf.schema import build_file_descriptor_set
-from numpy.typing import NDArray
 
 from teachpath.errors import UnusableRecording
+from teachpath.io.store.mcap_messages import COMPRESSORS, MessageBatch, message_records
 
 MAGIC = b"\x89MCAP0\r\n"
 DATA_END = struct.pack("<BQI", Opcode.DATA_END, 4, 0)
 FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary and of its offsets, check sum
-COMPRESSION, COMPRESSION_LEVEL = "zstd", 1
-_MESSAGE_HEAD = np.dtype(  # of a message; its data follow
-    [
-        ("opcode", "u1"),
-        ("length", "<u8"),
-        ("channel", "<u2"),
-        ("sequence", "<u4"),
-        ("log_time", "<u8"),
-        ("publish_time", "<u8"),
-    ]
-)
-_UNCOUNTED = 9  # bytes of opcode and length, which the length does not count
+COMPRESSION = "zstd"
 _INDEX = struct.Struct("<BQHI")  # opcode, length, channel, bytes of the entries
-
-Integers = NDArray[np.uint64]
-
-
-@dataclass(frozen=True, eq=False)
-class MessageBatch:
-    """Messages of one channel; times in nanoseconds since the Unix epoch.
-
-    Attributes:
-        channel: as `McapFile.add_channel` returned it.
-        sequences: (n,), of which the file keeps the lower 32 bits.
-        log_times: (n,).
-        publish_times: (n,).
-        data: n messages.
-    """
-
-    channel: int
-    sequences: Integers
-    log_times: Integers
-    publish_times: Integers
-    data: Sequence[bytes]
 
 
 class McapFile:
@@ -154,12 +120,13 @@ class McapFile:
         entries: list[tuple[int, bytes]] = []  # of each batch: channel, and log time and offset of its messages
         offset = 0
         for batch in batches:
-            sizes = _MESSAGE_HEAD.itemsize + np.fromiter(map(len, batch.data), np.uint64, len(batch.data))
-            ends = offset + np.cumsum(sizes)
-            index = np.stack([batch.log_times, ends - sizes], axis=1)
-            entries.append((batch.channel, index.astype("<u8").tobytes()))
-            pieces.extend(_message_pieces(batch, sizes))
-            offset = int(ends[-1])
+            records, sizes = message_records(batch)
+            index = np.empty((len(batch.data), 2), "<u8")
+            index[:, 0] = batch.log_times
+            index[:, 1] = offset + np.cumsum(sizes) - sizes
+            entries.append((batch.channel, index.tobytes()))
+            pieces.append(records)
+            offset += len(records)
         first = min(int(batch.log_times.min()) for batch in batches)
         last = max(int(batch.log_times.max()) for batch in batches)
         self._write_chunk(b"".join(pieces), first, last, entries)
@@ -221,7 +188,7 @@ class McapFile:
             self._counts[record.channel_id] += len(record.records)
 
     def _write_chunk(self, plain: bytes, first: int, last: int, entries: list[tuple[int, bytes]]) -> None:
-        packed = zstandard.ZstdCompressor(level=COMPRESSION_LEVEL).compress(plain)
+        packed = COMPRESSORS.own.compress(plain)
         chunk = _serialize(
             Chunk(
                 compression=COMPRESSION,
@@ -263,18 +230,6 @@ class McapFile:
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )
-
-
-def _message_pieces(batch: MessageBatch, sizes: Integers) -> Iterable[bytes]:
-    """Yield head and data of each message in turn; `sizes` (n,) are those of their records [bytes]."""
-    heads = np.empty(len(batch.data), _MESSAGE_HEAD)
-    heads["opcode"], heads["length"], heads["channel"] = Opcode.MESSAGE, sizes - _UNCOUNTED, batch.channel
-    heads["sequence"] = batch.sequences & 0xFFFFFFFF
-    heads["log_time"], heads["publish_time"] = batch.log_times, batch.publish_times
-    laid_out, size = heads.tobytes(), _MESSAGE_HEAD.itemsize
-    for i, data in enumerate(batch.data):
-        yield laid_out[size * i : size * (i + 1)]
-        yield data
 
 
 def _serialize(*records: McapRecord) -> bytes:

@@ -71,7 +71,7 @@ class RecordingFile:
         """Append one sample; `payload` is its message as it came, made anew when empty."""
         self._payloads.append(payload or encode_sample(sample))
         self._samples.append(sample)
-        if len(self._samples) >= BATCH_SIZE:
+        if len(self._payloads) >= BATCH_SIZE:
             self._write_batch()
 
     def flush(self) -> None:

@@ -37,11 +37,8 @@ class SampleRows(Sequence[Sample]):
 
     def append(self, sample: Sample) -> None:
         """Add a sample."""
-        s = sample
-        self._tracker = s.tracker
-        self._rows.append(
-            (s.sequence, s.device_ns, s.receive_ns, s.position, s.orientation, s.flexions, s.tracked, s.buttons)
-        )
+        self._tracker = sample.tracker
+        self._rows.append(sample[1:])
 
     def columns(self) -> ValueColumns:
         """Return the values of all samples, of which there is at least one."""

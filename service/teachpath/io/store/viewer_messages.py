@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from itertools import compress
+from itertools import chain, compress
 from typing import Final
 
 import numpy as np
@@ -15,7 +15,8 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
 from numpy.typing import NDArray
 
-from teachpath.io.store.mcap_file import McapFile, MessageBatch
+from teachpath.io.store.mcap_file import McapFile
+from teachpath.io.store.mcap_messages import Bytes, MessageBatch
 from teachpath.io.store.sample_rows import ValueColumns
 from teachpath.records import Array, Calibration
 
@@ -26,8 +27,6 @@ VARINT_SIZE: Final = 5  # bytes of a number from 2**28 to 2**35 - 1; a shorter o
 VARINT_SHIFTS: Final = 7 * np.arange(VARINT_SIZE)
 SECONDS_MARK, NANOS_MARK = 2**34 + 1, 2**30 + 1  # numbers of that size, for which others are put in
 NOT_TURNED: Final = (1.0, 0.0, 0.0, 0.0)
-
-Bytes = NDArray[np.uint8]
 
 
 class ViewerMessages:
@@ -47,11 +46,14 @@ class ViewerMessages:
             frame = self._frame_message(samples.receive_ns[0])
             batches.append(message_batch(self._frames, [frame], samples.receive_ns[:1], samples.device_ns[:1]))
         receive_ns, device_ns = (tuple(compress(of, samples.tracked)) for of in (samples.receive_ns, samples.device_ns))
-        positions = np.array(list(compress(samples.position, samples.tracked))).reshape(-1, 3)
-        turns = np.array([turn or NOT_TURNED for turn in compress(samples.orientation, samples.tracked)])
+        positions = chain.from_iterable(compress(samples.position, samples.tracked))
+        turned = compress(samples.orientation, samples.tracked)
+        turns = chain.from_iterable([turn or NOT_TURNED for turn in turned])
         # A rigid transform has no scale; the pose carries it.
         poses = LAYOUT.messages(
-            np.array(receive_ns, np.int64), self._calibration.scale * positions, turns.reshape(-1, 4)
+            np.array(receive_ns, np.int64),
+            self._calibration.scale * np.fromiter(positions, np.float64).reshape(-1, 3),
+            np.fromiter(turns, np.float64).reshape(-1, 4),
         )
         return [*batches, message_batch(self._poses, poses, receive_ns, device_ns)]
 
@@ -67,7 +69,7 @@ class ViewerMessages:
 
 def message_batch(
     channel: int,
-    data: Sequence[bytes],
+    data: Sequence[bytes] | Bytes,
     receive_ns: Sequence[int],
     device_ns: Sequence[int],
     sequences: Sequence[int] | None = None,
@@ -87,26 +89,26 @@ class _PoseLayout:
         p.x, p.y, p.z, q.w, q.x, q.y, q.z = marks
         content = message.SerializeToString()
         self._template = np.frombuffer(content, np.uint8)
-        starts = [content.index(struct.pack("<d", mark)) for mark in marks]
-        sizes = [8] * len(marks) + [VARINT_SIZE] * 2
-        starts += [content.index(_varints(np.array([mark])).tobytes()) for mark in (SECONDS_MARK, NANOS_MARK)]
-        self._places = np.concatenate([start + np.arange(size) for start, size in zip(starts, sizes, strict=True)])
+        self._doubles = [content.index(struct.pack("<d", mark)) for mark in marks]
+        self._stamps = [content.index(_varints(np.array([mark])).tobytes()) for mark in (SECONDS_MARK, NANOS_MARK)]
 
-    def messages(self, stamps_ns: NDArray[np.int64], positions: Array, turns: Array) -> list[bytes]:
-        """Return n messages.
+    def messages(self, stamps_ns: NDArray[np.int64], positions: Array, turns: Array) -> Bytes:
+        """Return n messages (n, size).
 
         Args:
             stamps_ns: (n,) since the Unix epoch.
             positions: (n, 3) [m].
             turns: (n, 4) w, x, y, z.
         """
-        rows = np.tile(self._template, (len(stamps_ns), 1))
-        stamps = np.stack(np.divmod(stamps_ns, NS_PER_S), axis=1)
-        doubles = np.concatenate([positions, turns], axis=1).astype("<f8").view(np.uint8)
-        varints = _varints(stamps).reshape(len(rows), stamps.shape[1] * VARINT_SIZE)  # -1 has no meaning for no rows
-        rows[:, self._places] = np.concatenate([doubles, varints], axis=1)
-        laid_out, size = rows.tobytes(), rows.shape[1]
-        return [laid_out[size * i : size * (i + 1)] for i in range(len(rows))]
+        rows = np.empty((len(stamps_ns), len(self._template)), np.uint8)
+        rows[:] = self._template
+        for values, starts in ((positions, self._doubles[:3]), (turns, self._doubles[3:])):
+            laid_out = values.astype("<f8").view(np.uint8)
+            for i, start in enumerate(starts):
+                rows[:, start : start + 8] = laid_out[:, 8 * i : 8 * (i + 1)]
+        for stamps, start in zip(np.divmod(stamps_ns, NS_PER_S), self._stamps, strict=True):
+            rows[:, start : start + VARINT_SIZE] = _varints(stamps)
+        return rows
 
 
 def _varints(numbers: NDArray[np.int64]) -> Bytes:

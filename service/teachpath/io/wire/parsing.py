@@ -15,13 +15,12 @@ M = TypeVar("M", bound=Message)
 FLOATS = (FieldDescriptor.CPPTYPE_DOUBLE, FieldDescriptor.CPPTYPE_FLOAT)
 
 
-def parse(kind: type[M], payload: bytes, *, check_finite: bool = True) -> M:
+def parse(kind: type[M], payload: bytes) -> M:
     """Parse a protobuf message of `kind`.
 
     Args:
         kind: of the message.
         payload: its bytes.
-        check_finite: False where the caller checks every number itself.
 
     Raises:
         UnusableInput: the payload is not such a message, or a number in it is not finite.
@@ -30,8 +29,7 @@ def parse(kind: type[M], payload: bytes, *, check_finite: bool = True) -> M:
         message = kind.FromString(payload)
     except DecodeError as error:
         raise UnusableInput(f"{len(payload)} bytes are not a {kind.DESCRIPTOR.name}: {error}") from None
-    if check_finite:
-        _require_finite(message, kind.DESCRIPTOR.name)
+    _require_finite(message, kind.DESCRIPTOR.name)
     return message
 
 

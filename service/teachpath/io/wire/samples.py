@@ -7,8 +7,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from teachpath.errors import UnusableInput, UnusableSample
-from teachpath.io.wire.parsing import parse
+from google.protobuf.message import DecodeError
+
+from teachpath.errors import UnusableSample
 from teachpath.records import Quaternion, Sample
 from teachpath_proto import tracker_pb2
 from teachpath_proto.sample_rules import MAX_SAMPLE_SIZE, NOT_MEASURED, sample_fault
@@ -24,19 +25,12 @@ def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
     p, q = message.position, message.orientation
     # a slice first: a quarter of the time of iterating over the message's own sequence
     position, turn, flexions = (p.x, p.y, p.z), (q.w, q.x, q.y, q.z), tuple(message.flexions[:])
-    if fault := sample_fault(position, turn, flexions, message.device_ns):
-        raise UnusableSample(f"sample {message.sequence} of {tracker}: {fault}", sequence=message.sequence)
-    return Sample(
-        tracker=tracker,
-        sequence=message.sequence,
-        device_ns=message.device_ns,
-        receive_ns=receive_ns,
-        position=position,
-        orientation=None if turn == NOT_MEASURED else _normalized(turn),
-        flexions=flexions,
-        tracked=message.tracked,
-        buttons=message.buttons,
-    )
+    sequence, device_ns = message.sequence, message.device_ns
+    if fault := sample_fault(position, turn, flexions, device_ns):
+        raise UnusableSample(f"sample {sequence} of {tracker}: {fault}", sequence=sequence)
+    orientation = None if turn == NOT_MEASURED else _normalized(turn)
+    tracked, buttons = message.tracked, message.buttons
+    return Sample(tracker, sequence, device_ns, receive_ns, position, orientation, flexions, tracked, buttons)
 
 
 def encode_sample(sample: Sample) -> bytes:
@@ -78,9 +72,9 @@ def _parse(payload: bytes) -> tracker_pb2.HandSample:
     if len(payload) > MAX_SAMPLE_SIZE:
         raise UnusableSample(f"a sample of {len(payload)} bytes is over the limit of {MAX_SAMPLE_SIZE}")
     try:
-        return parse(tracker_pb2.HandSample, payload, check_finite=False)
-    except UnusableInput as error:
-        raise UnusableSample(str(error)) from None
+        return tracker_pb2.HandSample.FromString(payload)
+    except DecodeError as error:
+        raise UnusableSample(f"{len(payload)} bytes are not a HandSample: {error}") from None
 
 
 def _normalized(q: Quaternion) -> Quaternion:

@@ -1,0 +1,54 @@
+"""What the operator of a recording commands with the hand: by its pedal, or by a fist."""
+
+from __future__ import annotations
+
+from teachpath.recording.fist_gesture import FistGesture
+from teachpath.recording.phases import TOGGLE_BUTTON
+from teachpath.recording.settings import RecordingSettings
+from teachpath.records import FistCommand, Sample, Vector
+
+
+class HandCommands:
+    """Follows pedal and fists of one recording.
+
+    Args:
+        carried: start of the object's centre [m, world]; None: there is no object, and a fist commands nothing.
+
+    Attributes:
+        pedal_used: whether the pedal has been pressed.
+    """
+
+    def __init__(self, settings: RecordingSettings, carried: Vector | None) -> None:
+        self._gesture = FistGesture(settings, carried)
+        self._buttons = 0
+        self._discard_requested = False
+        self.pedal_used: bool = False
+
+    @property
+    def pending(self) -> FistCommand | None:
+        """What the fist would command if it opened now."""
+        return self._gesture.pending_command
+
+    def push(self, sample: Sample, position: Vector, *, carrying: bool) -> bool:
+        """Add the next sample, newer than all before; return whether it pauses or resumes the recording."""
+        pressed = sample.buttons & TOGGLE_BUTTON and not self._buttons & TOGGLE_BUTTON
+        self._buttons = sample.buttons
+        command = self._gesture.push(sample, position, carrying=carrying)
+        if command is FistCommand.DISCARD:
+            self._discard_requested = True
+        if pressed:
+            self.pedal_used = True
+        return bool(pressed) or command is FistCommand.TOGGLE
+
+    def skip(self, sample: Sample) -> None:
+        """Take note of a sample whose commands were followed before."""
+        self._buttons = sample.buttons
+
+    def on_object_moved(self, carried: Vector | None) -> None:
+        """Take note that the object lies elsewhere [m, world]."""
+        self._gesture.carried = carried
+
+    def pop_discard_request(self) -> bool:
+        """Return, once, whether a fist has commanded to discard the last demonstration."""
+        requested, self._discard_requested = self._discard_requested, False
+        return requested
