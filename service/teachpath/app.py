@@ -259,8 +259,8 @@ class Station:
         notes += self.store.spool.faults() + (self._access.notes(datetime.now(UTC)) if self._access else [])
         notes += self.access.notes() + self.audit.notes() + self.scenes.notes
         notes += self.certificate.notes(datetime.now(UTC)) if self.certificate else []
-        if (unfinished := self.store.recordings.unfinished()) and not self.recorder.statuses():
-            notes.append(f"{len(unfinished)} recordings were cut off; stop the service and run: teachpath doctor")
+        if left := self.store.recordings.cut_off(self.recorder.is_writing):
+            notes.append(f"{len(left)} recordings were cut off; stop the service and run: teachpath doctor")
         return notes + abandoned_notes(Path(self.settings.store.data_dir))
 
     def _polls(self) -> dict[str, Poll]:

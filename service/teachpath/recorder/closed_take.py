@@ -106,6 +106,11 @@ class TakeQueue:
         """Whether takes are closed faster than they are completed."""
         return len(self._actions) > MAX_WAITING
 
+    @property
+    def is_running(self) -> bool:
+        """Whether takes are not settled yet; to be asked while the condition is held."""
+        return self._is_running
+
     def complete(self, closed: ClosedTake) -> FinishedTake | None:
         """Complete a take after those before it."""
         closed.take.flush()  # a killed process loses nothing of a take that waits

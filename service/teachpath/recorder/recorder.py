@@ -181,11 +181,10 @@ class Recorder:
             NotFound: the tracker is not being recorded.
         """
         tracker, last_sequence = request.tracker, request.last_sequence
-        with self._recording.condition:
+        with (condition := self._recording.condition):
             session = self._recording.session(tracker)
             if last_sequence is not None:
-                arrived = lambda: session.counter.highest >= last_sequence  # noqa: E731
-                self._recording.condition.wait_for(arrived, timeout=self._settings.handshake_timeout)
+                condition.wait_for(lambda: session.counter.highest >= last_sequence, self._settings.handshake_timeout)
             self._recording.drain(session)
             if last_sequence is not None:
                 session.counter.count_missing_until(last_sequence)
@@ -244,12 +243,16 @@ class Recorder:
     def faults(self) -> list[str]:
         """Say what keeps samples from being recorded now, for the operator."""
         with self._recording.condition:
-            sessions = list(self._recording.sessions.values())
+            sessions = self._recording.sessions.values()
             found = [f"{session.tracker}: {session.fault}" for session in sessions if session.fault]
         if self._missed:
             found.append(f"Zenoh reports {self._missed} samples that never came")
         found += self.owners.faults()
         return found + [sentence for sentence in [self._queues.invalid_names()] if sentence]
+
+    def is_writing(self) -> bool:
+        """Tell whether a recording runs, or a take that has ended is being completed."""
+        return self._recording.is_writing()
 
     def kept_idle(self, task: str) -> AbstractContextManager[None]:
         """Let no recording of a task begin in the block, and all takes be stored; raises Conflict where one runs."""
@@ -282,7 +285,6 @@ class Recorder:
             log.exception("demonstration %s is stored, but could not be shown", demonstration.id)
 
     def _discard_last_of(self, session: RecordingSession) -> None:
-        for key in reversed(session.demonstrations):
-            if not self._store.demonstration(key).discarded_ns:
-                self.annotations.amend(key, Amendment(discarded=True))
-                return
+        kept = (key for key in reversed(session.demonstrations) if not self._store.demonstration(key).discarded_ns)
+        if (newest := next(kept, None)) is not None:
+            self.annotations.amend(newest, Amendment(discarded=True))

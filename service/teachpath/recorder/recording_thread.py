@@ -103,6 +103,11 @@ class RecordingThread:
         self._take_queues.add(queue)
         return queue
 
+    def is_writing(self) -> bool:
+        """Tell whether a recording runs, or a take that has ended is being completed."""
+        with self.condition:
+            return bool(self.sessions) or any(queue.is_running for queue in list(self._take_queues))
+
     def wait_for_takes(self) -> None:
         """Wait until the takes that have ended are stored."""
         with self.condition:

@@ -242,3 +242,9 @@ class Recordings:
     def unfinished(self) -> list[Path]:
         """List the `.part` files: takes that are running, or that a crash left."""
         return sorted(self._root.glob(f"*/*{PART}"))
+
+    def cut_off(self, is_writing: Callable[[], bool]) -> list[Path]:
+        """List the `.part` files that a crash or a fault left; none while takes are written."""
+        found = self.unfinished()
+        # What was being written when it was found has its final name, or is gone, once nothing is written any more.
+        return [file for file in found if file.exists()] if found and not is_writing() else []
