@@ -2,11 +2,9 @@
 
 from typing import Any
 
-from tests.system.carriers import START, phase, until_box
 from tests.system.operators import Operator
 from tests.system.test_view import Visit
 
-LOW = START[2] + 0.05  # [m]
 MAX_TABS = 90  # from anywhere to anything: more is a trap
 # What has the focus, in the words of a screen reader or of whoever looks at it; the page as a whole has none.
 FOCUSED = """() => {
@@ -19,10 +17,10 @@ FOCUSED = """() => {
 
 
 class Keyboard:
-    """Somebody who has no pointer, and counts what is pressed, and what is done by it."""
+    """Somebody who has no pointer, and counts what is pressed."""
 
     def __init__(self, visit: Visit) -> None:
-        self.visit, self.page, self.presses, self.actions = visit, visit.page, 0, 0
+        self.visit, self.page, self.presses = visit, visit.page, 0
 
     @property
     def focused(self) -> str:
@@ -44,45 +42,31 @@ class Keyboard:
 
     def use(self, words: str, key: str = "Enter") -> None:
         """Go to a button and press it; wait until something has the focus again, whatever became of the button."""
-        self.actions += 1
         self.go(words)
         self.press(key)
         self.keeps_focus(words)
 
+    def tab(self, words: str) -> None:
+        """Choose one of the page's tabs by the arrow keys."""
+        self.go("tab tab-")
+        for _ in range(MAX_TABS):
+            if words in self.focused:
+                return
+            self.press("ArrowRight")
+        raise AssertionError(f"the tab {words!r} is not reached; the focus is on {self.focused!r}")
+
     def keeps_focus(self, after: Any) -> None:
         self.visit.wait(lambda: self.focused != "", f"something has the focus after {after}")
 
-    def hold(self, name: str, until: str) -> None:
-        """Keep a key pressed until the box, `at` [m], is where it should be."""
-        self.presses += 1
-        self.page.keyboard.down(name)
-        until_box(self.visit, until)
-        self.page.keyboard.up(name)
 
-    def show(self) -> None:
-        """Grasp the box, carry it and let it go."""
-        self.actions += 1
-        far = f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.1"
-        self.press("Enter")
-        phase(self.visit, "carrying")
-        for key, there in (("PageUp", f"at[2] > {START[2] + 0.1}"), ("ArrowLeft", far), ("PageDown", f"at[2] < {LOW}")):
-            self.hold(key, there)
-        self.press("Enter")
-        phase(self.visit, "ready")
-
-
-def tell_by_keyboard(keys: Keyboard, operator: Operator) -> int:
-    """Show a task, learn and edit it, certify that, run it and stop the arm; return the acts up to the first motion."""
-    visit, page = keys.visit, keys.page
-    keys.use("Show it here")
-    phase(visit, "ready")
-    visit.wait(lambda: "view" in keys.focused, "the keyboard carries")
-    for _ in range(2):
-        keys.show()
-    keys.use("Finish")
-    page.locator("#demonstration-session [data-learn]").wait_for()
-    keys.use("Learn the ways")
-    page.get_by_role("button", name="Edit way 1").wait_for()
+def tell_by_keyboard(visit: Visit, operator: Operator) -> int:
+    """Certify a way, edit it, save and certify that, run it and stop the arm; return how many keys were pressed."""
+    keys, page = Keyboard(visit), visit.page
+    keys.tab("Ways")
+    keys.use("Certify way 1")
+    visit.wait(lambda: page.get_by_role("button", name="Run way 1").is_visible())
+    keys.keeps_focus("the plan has come")
+    keys.tab("Ways")
     keys.use("Edit way 1")
     visit.wait(lambda: page.evaluate("teachpath.editor.draft !== null"))
     keys.go("edit-points")
@@ -96,7 +80,6 @@ def tell_by_keyboard(keys: Keyboard, operator: Operator) -> int:
     page.locator("#edit-run").wait_for()
     keys.use("Go to Run")
     visit.wait(lambda: page.evaluate("teachpath.state().plan?.path_version === 2"))
-    acts = keys.actions + 3  # the point that was chosen and moved, and the start
     keys.go("Speed")
     keys.press("Home")
     for _ in range(10):
@@ -113,9 +96,8 @@ def tell_by_keyboard(keys: Keyboard, operator: Operator) -> int:
     visit.wait(begun)
     page.wait_for_selector("#arm button.hold:disabled", state="attached")
     keys.keeps_focus("the arm has started")
-    newest = operator.executions()[0].id
-    visit.wait(lambda: operator.status().get("execution") == newest)
+    visit.wait(lambda: page.evaluate("document.querySelector('#arm progress')?.value < 1"))  # something waits
     keys.press("Space")
     page.wait_for_selector("#arm button.hold:not(:disabled)")
     visit.wait(lambda: "Keep pressed to start" in keys.focused, "the focus is where it was before the arm moved")
-    return acts
+    return keys.presses

@@ -17,6 +17,8 @@ from teachpath.nurbs import Curve
 from teachpath_client.models import Run
 from tests.system.access import barriers
 from tests.system.changes import edit_the_scene, rename_delete_and_undo, tab
+from tests.system.keyboard import tell_by_keyboard
+from tests.system.operators import Operator
 from tests.system.packages import Package
 from tests.system.processes import Service, run
 from tests.system.test_station import record
@@ -85,6 +87,13 @@ def test_nothing_keeps_anybody_from_the_page(visit: Visit) -> None:
         page.emulate_media(**wishes)
         found += barriers(page, f"{wishes}")
     assert found == []
+
+
+def test_the_whole_story_is_told_by_the_keyboard_alone(visit: Visit, service: Service) -> None:
+    operator = Operator(visit, service.station)
+    assert tell_by_keyboard(visit, operator) < 400
+    visit.wait(lambda: operator.executions()[0].status.state == "ended")
+    assert operator.said == []
 
 
 def test_tasks_and_scenes_are_made_and_changed_in_the_page_and_kept_through_a_reload(

@@ -15,7 +15,6 @@ from tests.system.carriers import (
     START,
     begin,
     carry_worn,
-    choose_new,
     finish,
     has_no_gaps,
     is_judged_by_its_frames,
@@ -24,12 +23,12 @@ from tests.system.carriers import (
     phase,
     until_box,
 )
-from tests.system.keyboard import Keyboard, tell_by_keyboard
 from tests.system.operators import Operator
 from tests.system.processes import Service
 from tests.system.stories import Fingers, Mouse, tell
 from tests.system.test_view import Visit
 
+LOW = START[2] + 0.05  # [m]
 SIZE = (900, 420)  # which leaves the machine to the sampling
 MOST_ACTS = 12  # from the first press to the first motion
 ASSETS = Path(__file__).parent / "assets"
@@ -76,13 +75,20 @@ def test_the_whole_story_is_told_by_mouse_and_takes_are_discarded_and_brought_ba
     assert operator.said == []
 
 
-def test_the_whole_story_is_told_by_the_keyboard_alone(visit: Visit, service: Service) -> None:
-    choose_new(visit, service, "by-keys")
-    keys, operator = Keyboard(visit), Operator(visit, service.station)
-    assert tell_by_keyboard(keys, operator) <= MOST_ACTS
-    assert keys.presses < 400
-    was_carried(service, "by-keys", takes=2)
-    assert operator.said == []
+def test_a_take_by_keyboard(visit: Visit, service: Service) -> None:
+    begin(visit, service, "by-keys")
+    keys = visit.page.keyboard
+    keys.press("Enter")
+    phase(visit, "carrying")
+    far = f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.1"
+    for key, there in (("PageUp", f"at[2] > {START[2] + 0.1}"), ("ArrowLeft", far), ("PageDown", f"at[2] < {LOW}")):
+        keys.down(key)
+        until_box(visit, there)
+        keys.up(key)
+    keys.press("Enter")
+    phase(visit, "ready")
+    finish(visit)
+    was_carried(service, "by-keys")
 
 
 def was_carried(service: Service, task: str, takes: int = 1) -> None:
