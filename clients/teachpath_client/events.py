@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from threading import Thread
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from teachpath_client.errors import Unreachable
 from teachpath_client.structuring import structured
 from teachpath_proto.authorities import trusted_authorities
 
 if TYPE_CHECKING:  # loaded when somebody listens: the command line imports this module
-    from websockets.sync.client import ClientConnection
+    from asyncio import AbstractEventLoop
+
+    from websockets.asyncio.client import ClientConnection
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,8 @@ class Event:
 class Events:
     """The events from now on; use it as a context manager, and iterate over it.
 
-    The first event is of topic `all`.
+    The first event is of topic `all`. The WebSocket is read and written on one thread of its own, because a connection
+    by TLS is not safe on two.
 
     Args:
         url: of the station.
@@ -56,18 +62,26 @@ class Events:
         self._trusted = trusted_authorities(url)
         self._address = f"ws{url.removeprefix('http').rstrip('/')}/api/v1/events"
         self._stack = ExitStack()
+        self._loop: AbstractEventLoop
         self._socket: ClientConnection
 
     def __enter__(self) -> Self:
-        from websockets.exceptions import WebSocketException
-        from websockets.sync.client import connect
+        import asyncio
 
+        from websockets.exceptions import WebSocketException
+
+        self._loop = asyncio.new_event_loop()
+        thread = Thread(target=self._loop.run_forever, name="events", daemon=True)
+        thread.start()
+        self._stack.callback(self._loop.close)
+        self._stack.callback(thread.join)
+        self._stack.callback(self._loop.call_soon_threadsafe, self._loop.stop)
         try:
-            self._socket = self._stack.enter_context(
-                connect(self._address, proxy=None, additional_headers=self._headers, ssl=self._trusted)
-            )
+            self._socket = self._await(self._connect())
         except (OSError, WebSocketException) as error:
+            self._stack.close()
             raise Unreachable(f"no events from {self._address} ({error}); start it with: teachpath serve") from None
+        self._stack.callback(lambda: self._await(self._socket.close()))
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -81,11 +95,24 @@ class Events:
 
     def next(self, timeout: float | None) -> Event | None:
         """Return the next event; None when there is none within `timeout` [s]."""
+        import asyncio
+
         from websockets.exceptions import WebSocketException
 
         try:
-            return structured(Event, json.loads(self._socket.recv(timeout)))
+            return structured(Event, json.loads(self._await(asyncio.wait_for(self._socket.recv(), timeout))))
         except TimeoutError:
             return None
         except WebSocketException as error:
             raise Unreachable(f"the station at {self._address} has gone ({error})") from None
+
+    async def _connect(self) -> ClientConnection:
+        from websockets.asyncio.client import connect
+
+        return await connect(self._address, proxy=None, additional_headers=self._headers, ssl=self._trusted)
+
+    def _await(self, work: Coroutine[Any, Any, T]) -> T:
+        """Return what comes of work on the thread of the WebSocket."""
+        import asyncio
+
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result()

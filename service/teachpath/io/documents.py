@@ -6,11 +6,12 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from typing import Any, TypeVar, get_origin
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 import numpy as np
 from cattrs import ClassValidationError, transform_error
 from cattrs.preconf.json import make_converter
+from cattrs.v import format_exception
 
 from teachpath.errors import UnusableInput
 from teachpath.records import Demonstration
@@ -51,7 +52,17 @@ def from_document(kind: type[T], document: Mapping[str, Any]) -> T:
     try:
         return _converter.structure(document, kind)
     except ClassValidationError as error:
-        raise UnusableInput(f"not a {kind.__name__}: {'; '.join(transform_error(error)[:3])}") from None
+        raise UnusableInput(
+            f"not a {kind.__name__}: {'; '.join(transform_error(error, format_exception=_fault)[:3])}"
+        ) from None
+
+
+def _fault(error: BaseException, kind: type[Any] | None) -> str:
+    """Return what is wrong with a field; of one that takes some words alone, which ones."""
+    if get_origin(kind) is not Literal:
+        return format_exception(error, kind)
+    value = str(error).partition(" not in literal")[0]
+    return f"{value!r} is none of {', '.join(repr(word) for word in get_args(kind))}"
 
 
 def encode(record: Any) -> bytes:

@@ -20,7 +20,6 @@ from teachpath.io.store.salvage import salvage_stream
 from teachpath.motion.arm.model import Arm
 from teachpath.offline.recorded_arm import kinematics_of
 from teachpath.offline.track_samples import MotionMarks, PhaseMarks, samples_of
-from teachpath.recorder.annotations import MARKS
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample
 
@@ -148,8 +147,6 @@ def _read_recording(source: Source, limits: ImportSettings) -> FileSamples:
 def _believed(stated: Demonstration, samples: list[Sample], name: str) -> Demonstration:
     """Return what a file says of its demonstration, as far as it can be true of its samples."""
     count = len(samples)
-    if stated.mark not in MARKS:
-        raise UnusableRecording(f"{name}: its mark {stated.mark!r} is none of good, bad and nothing")
     if not 0 <= stated.grasp < stated.release <= count:
         raise UnusableRecording(
             f"{name}: it says that the object was carried from sample {stated.grasp} to {stated.release}, of {count}"

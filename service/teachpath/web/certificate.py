@@ -96,6 +96,9 @@ def _context(folder: Path) -> ssl.SSLContext:
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     context.set_alpn_protocols(["http/1.1"])
+    # A ticket comes after the handshake, when a program may already write; one that reads on another thread, as of
+    # Python's synchronous WebSockets, hangs once in a thousand connections then.
+    context.num_tickets = 0
     try:
         context.load_cert_chain(folder / CERTIFICATE, key, _no_password)
     except (OSError, ValueError) as error:

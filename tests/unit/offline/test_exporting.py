@@ -96,7 +96,7 @@ def test_a_trim_that_cannot_be_is_left_out_and_an_unknown_mark_refused(
     with pytest.raises(UnusableRecording, match=r"cut\.csv: it says that the object was carried from sample \d+ to 1"):
         imported(store, tmp_path / "cut.csv", "csv")
     (tmp_path / "marked.csv").write_bytes(content.replace(b'"mark":""', b'"mark":"evil"', 1))
-    with pytest.raises(UnusableRecording, match=r"marked\.csv: its mark 'evil' is none of good, bad"):
+    with pytest.raises(UnusableRecording, match=r"marked\.csv: .*'evil' is none of '', 'good', 'bad'"):
         imported(store, tmp_path / "marked.csv", "csv")
     assert len(store.demonstrations("again")) == 1
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from sqlalchemy.engine import make_url
+from sqlalchemy.exc import ArgumentError
 
 from teachpath.errors import StorageUnavailable
 from teachpath.io.store.faults import database_fault, storage_fault
@@ -47,7 +48,10 @@ def database_url(settings: StoreSettings) -> str:
 
 def database_file(settings: StoreSettings) -> Path | None:
     """Return the file of a store's database; None where it has a server, or is in memory."""
-    url = make_url(database_url(settings))
+    try:
+        url = make_url(database_url(settings))
+    except ArgumentError:  # which the engine says
+        return None
     return Path(url.database) if url.get_backend_name() == "sqlite" and url.database else None
 
 
