@@ -90,7 +90,8 @@ export function administration(place, button, { store }) {
     aboutPeople.textContent = identity.provider ? aboutProvider(identity.provider) : ABOUT_PEOPLE;
     if (button.hidden && place.matches(":popover-open")) place.hidePopover();
   });
-  place.addEventListener("toggle", (event) => {
+  // The toggle comes only after a while, when a person may have typed already.
+  place.addEventListener("beforetoggle", (event) => {
     forget();
     if (event instanceof ToggleEvent && event.newState === "open") attempt(async () => {});
   });

@@ -56,7 +56,8 @@ class TaskMenu {
       const { bringBack } = closestData(event);
       if (bringBack) this.#attempt(() => this.#restore(bringBack));
     });
-    place.addEventListener("toggle", (event) => {
+    // The toggle comes only after a while, when a person may have typed a name already.
+    place.addEventListener("beforetoggle", (event) => {
       if (!(event instanceof ToggleEvent) || event.newState !== "open") return;
       this.update(store.state, true);
       this.readDeleted();
