@@ -124,15 +124,8 @@ class Station:
         self._state_poller.stop()
         self.access.stop()
         self.processes[0].request_stop()
-        first: tuple[Stoppable, ...] = (
-            self._queries,
-            self.recorder,
-            self.reader,
-            self.mesh_reader,
-            self.guidance,
-            self.jobs,
-        )
-        then: tuple[Stoppable, ...] = (self.assessor, self.exporter, self.certificate_status, self.objects)
+        first: tuple[Stoppable, ...] = (self._queries, self.recorder, self.reader, self.mesh_reader, self.guidance)
+        then: tuple[Stoppable, ...] = (self.jobs, self.assessor, self.exporter, self.certificate_status, self.objects)
         for part in (*first, *then, *self.processes, self.executions, self.joints, self.preview):
             part.stop()  # executions after the executor, whose last status is the end of what was under way
         self.bus.close()
@@ -265,13 +258,10 @@ class Station:
 
     def _polls(self) -> dict[str, Poll]:
         """Return by topic how to read the states that no row of the store holds."""
+        statuses, trackers = self.recorder.statuses, self.recorder.trackers
         return {
-            "recordings": lambda: {
-                s.tracker: recording_document(s) for s in self.recorder.statuses(with_statistics=True)
-            },
-            "trackers": lambda: {
-                t.name: {"announced": t.announced, "silent": t.is_silent} for t in self.recorder.trackers()
-            },
+            "recordings": lambda: {s.tracker: recording_document(s) for s in statuses(with_statistics=True)},
+            "trackers": lambda: {t.name: {"announced": t.announced, "silent": t.is_silent} for t in trackers()},
             "guidance": lambda: {task: {"sentence": said} for task, said in self.guidance.all_advice().items()},
             "station": lambda: {"": asdict(StationState(__version__, self.notes(), self._authority, has_documents()))},
             "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},

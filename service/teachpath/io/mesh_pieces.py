@@ -20,7 +20,7 @@ SUFFIXES: Final = (".glb", ".ply")  # of files that trimesh reads; OBJ and STL n
 SEED: Final = 0
 SAMPLES: Final = 20_000  # places on the surface, of which each must be within a piece
 LARGEST_OUTSIDE: Final = 0.01  # of the extent; pieces that leave more of the surface out are of another body
-# Of CoACD's search: its own ones take ten times as long, and cut an open box no better.
+# Of CoACD's search: its own ones take much longer, and cut an open box no better.
 SEARCH: Final = {
     "mcts_iterations": 30,
     "mcts_nodes": 10,

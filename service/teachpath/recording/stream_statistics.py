@@ -295,8 +295,6 @@ class StreamCounter:
             self.note(f"the device's clock {how} at sample {sample.sequence}")
             self._clock.restart()
         else:
-            gap_ns = self._clock_steps.step_ns
-            if gap_ns > self._interval_longest_gap_ns:
-                self._interval_longest_gap_ns = gap_ns
-                self._longest_gap_ns = max(self._longest_gap_ns, gap_ns)
+            self._interval_longest_gap_ns = max(self._interval_longest_gap_ns, self._clock_steps.step_ns)
+            self._longest_gap_ns = max(self._longest_gap_ns, self._clock_steps.step_ns)
         self._clock.observe(sample)

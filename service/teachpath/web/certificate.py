@@ -97,7 +97,7 @@ def _context(folder: Path) -> ssl.SSLContext:
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     context.set_alpn_protocols(["http/1.1"])
     # A ticket comes after the handshake, when a program may already write; one that reads on another thread, as of
-    # Python's synchronous WebSockets, hangs once in a thousand connections then.
+    # Python's synchronous WebSockets, hangs now and then.
     context.num_tickets = 0
     try:
         context.load_cert_chain(folder / CERTIFICATE, key, _no_password)

@@ -111,6 +111,16 @@ def test_so_do_websockets(folder: Path, port: int) -> None:
         assert page.recv(HANG) == "over TLS"
 
 
+def test_nothing_comes_after_the_handshake_but_answers(folder: Path, port: int) -> None:
+    """A session ticket would: whoever reads and writes on two threads trips over it."""
+    context = ssl.create_default_context(cafile=str(folder / "authority.pem"))
+    with context.wrap_socket(socket.create_connection(("127.0.0.1", port)), server_hostname="127.0.0.1") as page:
+        page.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+        assert b"https 0" in rest(page)
+        assert page.version() == "TLSv1.3"
+        assert page.session is None or not page.session.has_ticket
+
+
 def test_whoever_does_not_trust_it_does_not(port: int) -> None:
     with pytest.raises(httpx.ConnectError, match="CERTIFICATE_VERIFY_FAILED"):
         httpx.get(f"https://127.0.0.1:{port}/", timeout=HANG, trust_env=False)

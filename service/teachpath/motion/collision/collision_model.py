@@ -89,14 +89,10 @@ class CollisionModel:
         self._solids = {self._id(part.name): part for part in collision_solids(arm)}
         self._self_pairs = checked_solid_pairs(self._solids, arm)
         self._names = {geom: part.name for geom, part in self._solids.items()}
-        self._obstacles = []
-        for shape in convex_shapes(scene.obstacles):
-            self._obstacles.append(self._id(f"obstacle:{shape.name}"))
-            self._names[self._obstacles[-1]] = whole_name(shape.name)
-        self._zones = []
-        for shape in convex_shapes(scene.keep_out):
-            self._zones.append(self._id(f"zone:{shape.name}"))
-            self._names[self._zones[-1]] = f"the keep-out zone {whole_name(shape.name)}"
+        obstacles = {self._id(f"obstacle:{s.name}"): whole_name(s.name) for s in convex_shapes(scene.obstacles)}
+        zones = {self._id(f"zone:{s.name}"): whole_name(s.name) for s in convex_shapes(scene.keep_out)}
+        self._obstacles, self._zones = list(obstacles), list(zones)
+        self._names |= obstacles | {geom: f"the keep-out zone {name}" for geom, name in zones.items()}
         self._boundaries = scene_boundaries(scene)
         self._object = self._id(CARRIED_BODY) if scene.carried else -1
         if scene.carried:
@@ -168,9 +164,8 @@ class CollisionModel:
         if load is not None and load.grasp_pose is not None:
             around = [(self._object, other) for other in self._obstacles + self._zones]
             pairs.bodies.extend(pair for pair in around if pair not in supports.bodies)
-            near = self.arm.joint_count - (
-                2 if self.arm.model is None else 1
-            )  # the last link that is far from all that the fingers can hold
+            # The last link that is far from all that the fingers can hold.
+            near = self.arm.joint_count - (2 if self.arm.model is None else 1)
             pairs.bodies.extend((self._object, geom) for geom, part in self._solids.items() if part.link <= near)
             sides = [(self._object, boundary) for boundary in self._boundaries]
             pairs.boundaries.extend(pair for pair in sides if pair not in supports.boundaries)
@@ -211,13 +206,12 @@ class CollisionModel:
         return pose
 
     def _place(self, q: Array, pose: Array | None) -> None:
-        data = self._data
-        count = len(q)
-        data.qpos[:count] = q
+        count, qpos = len(q), self._data.qpos
+        qpos[:count] = q
         if pose is not None:
-            data.qpos[count : count + 3] = pose[:3, 3]
-            mujoco.mju_mat2Quat(data.qpos[count + 3 : count + 7], np.ascontiguousarray(pose[:3, :3]).ravel())
-        mujoco.mj_kinematics(self._model, data)
+            qpos[count : count + 3] = pose[:3, 3]
+            mujoco.mju_mat2Quat(qpos[count + 3 : count + 7], np.ascontiguousarray(pose[:3, :3]).ravel())
+        mujoco.mj_kinematics(self._model, self._data)
 
     def _distance(self, one: int | np.int64, two: int | np.int64, furthest: float) -> float:
         return float(mujoco.mj_geomDistance(self._model, self._data, int(one), int(two), furthest, None))
