@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from teachpath.motion.arm.held_object import MAX_GRASP_DISTANCE
 from teachpath.motion.arm.kinematics import tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.rotations import rotation_matrices
@@ -15,7 +16,6 @@ from teachpath.records import JointState, Sample
 
 CLOSING_THRESHOLD: Final = 0.6  # closure of the hand above which the gripper closes
 OPENING_THRESHOLD: Final = 0.4  # closure of the hand below which the gripper opens
-MAX_GRASP_DISTANCE: Final = 0.05  # [m] from grasp point to object's centre; an object farther off is not in the gripper
 
 
 class GripperFollower:

@@ -1,4 +1,4 @@
-"""Torques of the motors along a motion: inverse dynamics of the arm (MuJoCo), with friction and a load."""
+"""Torques of the motors along a motion: inverse dynamics of the arm (MuJoCo), with friction and what it holds."""
 
 from __future__ import annotations
 
@@ -7,28 +7,43 @@ from typing import Final
 import mujoco
 import numpy as np
 
-from teachpath.motion.arm.kinematics import jacobian, link_frames, tool_pose
+from teachpath.motion.arm.held_object import HELD_BODY, RigidBody, UnknownGrasp
+from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.mjcf import write_mjcf
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.arm.object_mass import object_mass
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.arm.torque_variation import MovingMass, TorqueVariation
+from teachpath.motion.arm.torque_variation import MovingMass, TorqueVariation, lever_arms
 from teachpath.records import Scene, Shape
 
-GRAVITY: Final = np.array([0.0, 0.0, -9.81])  # m/s^2
 COULOMB_FADE_SPEED: Final = 0.02  # rad/s, joint speed below which Coulomb friction fades out
 
 
 class Dynamics:
-    """The arm without surroundings; the carried object is a point mass at the grasp point.
+    """The arm without surroundings; what it holds is a rigid body.
+
+    Args:
+        arm: with its payload.
+        carried: the object in the gripper; None: it carries none.
+        grasp_pose: (4, 4) to the tool from the object; None: it is not known. Then the object counts as a point at the
+            grasp point, and all bounds hold wherever it is held within `MAX_GRASP_DISTANCE`, however it is turned.
 
     Attributes:
         carried_mass: of the object [kg]; 0: it carries none.
     """
 
-    def __init__(self, arm: Arm, carried: Shape | None = None) -> None:
-        self._arm = arm
-        self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing"), arm))
+    def __init__(self, arm: Arm, carried: Shape | None = None, grasp_pose: Array | None = None) -> None:
+        self._arm, held = arm, ""
+        self.carried_mass: float = 0.0
+        self._grasp: UnknownGrasp | None = None
+        if carried is not None:
+            body = RigidBody.of_shape(carried)
+            self.carried_mass = body.mass
+            if grasp_pose is None:
+                radius = float(np.linalg.norm(arm.tool_matrix[:3, 3]))
+                self._grasp = UnknownGrasp(body, lever_arms(arm.joint_count, radius, arm))
+                body, grasp_pose = body.as_point(), np.eye(4)
+            held = body.write_mjcf(arm.tool_matrix @ grasp_pose)
+        self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing"), arm, held=held))
         self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT  # of the floor, which would only cost time
         self._data = mujoco.MjData(self._model)
         if arm.model is None:
@@ -38,7 +53,6 @@ class Dynamics:
         else:
             self._coulomb = np.array([joint.friction for joint in arm.model.joints])
             self._viscous = np.array([joint.damping for joint in arm.model.joints])
-        self.carried_mass: float = 0.0 if carried is None else object_mass(carried)
         self._variation = TorqueVariation(self._moving_masses(), arm)
 
     def torques(self, q: Array, velocity: Array, acceleration: Array) -> Array:
@@ -61,7 +75,8 @@ class Dynamics:
         inertia, gravity, coriolis = self._terms(q, velocity)
         # Gravity does not depend on the rate, Coriolis and centrifugal torques grow with its square.
         steady = np.maximum(np.abs(gravity), np.abs(gravity + coriolis))
-        return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
+        friction = np.abs(self._viscous * velocity) + self._coulomb
+        return np.asarray(np.abs(inertia) @ acceleration + steady + friction + self._loose(velocity, acceleration))
 
     def motion_bounds(self, states: Array, turns: Array, period: float, stride: int = 1) -> Array:
         """Return upper bounds (m, joints) [N m] of the torques at any moment of n periods, a row for each stride.
@@ -84,7 +99,8 @@ class Dynamics:
         turned = np.add.reduceat(turns, begins).max(axis=0)
         variation = self._variation.bound(turned, speeds, changes, accelerations)
         friction = self._viscous * (speeds + changes) + self._coulomb
-        return np.asarray(largest + variation + friction, dtype=np.float64)
+        loose = self._loose(speeds + changes, accelerations)
+        return np.asarray(largest + variation + friction + loose, dtype=np.float64)
 
     def acceleration_share(self, q: Array, velocity: Array, acceleration: Array) -> float:
         """Return the largest share of the acceleration limits (joints,) at which `torque_bounds` keep those of torque.
@@ -104,11 +120,15 @@ class Dynamics:
             link = _link_of(model, body)
             if link:
                 radius = float(np.linalg.norm(data.xipos[body] - origins[link]))
-                found.append(MovingMass(link, radius, model.body_mass[body], model.body_inertia[body].max()))
-        if self.carried_mass:
-            radius = float(np.linalg.norm(self._arm.tool_matrix[:3, 3]))
-            found.append(MovingMass(len(self._arm.limits.lower), radius, self.carried_mass, 0.0))
+                inertia = float(model.body_inertia[body].max())
+                if self._grasp is not None and model.body(body).name == HELD_BODY:
+                    radius, inertia = radius + self._grasp.distance, self._grasp.inertia
+                found.append(MovingMass(link, radius, model.body_mass[body], inertia))
         return found
+
+    def _loose(self, velocity: Array, acceleration: Array) -> Array | float:
+        """Return what an object can add that is held nobody knows how (see `UnknownGrasp.torques`)."""
+        return 0.0 if self._grasp is None else self._grasp.torques(velocity, acceleration)
 
     def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
         """Return inertia matrices (n, joints, joints), torques (n, joints) of gravity and of speed."""
@@ -126,11 +146,6 @@ class Dynamics:
             coriolis[row] = data.qfrc_bias[:count] - gravity[row]
             mujoco.mj_fullM(model, data, whole)
             inertia[row] = whole[:count, :count]
-        if self.carried_mass:
-            translation, turning = jacobian(q, self._arm)[:, :3], _centripetal(q, velocity, self._arm)
-            inertia += self.carried_mass * np.einsum("nki,nkj->nij", translation, translation)
-            gravity -= self.carried_mass * translation.transpose(0, 2, 1) @ GRAVITY
-            coriolis += self.carried_mass * np.einsum("nki,nk->ni", translation, turning)
         return inertia, gravity, coriolis
 
 
@@ -139,9 +154,3 @@ def _link_of(model: mujoco.MjModel, body: int) -> int:
     while body and not model.body_jntnum[body]:
         body = model.body_parentid[body]
     return int(model.body_jntadr[body]) + 1 if body else 0
-
-
-def _centripetal(q: Array, velocity: Array, arm: Arm, step: float = 1e-4) -> Array:
-    """Return the grasp point's acceleration (n, 3) at constant joint velocities, from differences over `step` [s]."""
-    before, now, after = (tool_pose(q + k * step * velocity, arm)[:, :3, 3] for k in (-1, 0, 1))
-    return np.asarray((before - 2 * now + after) / step**2, dtype=np.float64)

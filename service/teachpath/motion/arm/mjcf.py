@@ -28,7 +28,7 @@ _OBJECT_CONTACTS: Final = 'contype="2" conaffinity="1"'
 _ZONE_CONTACTS: Final = 'contype="0" conaffinity="0"'  # a zone is a rule: nothing stands there
 
 
-def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
+def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001, held: str = "") -> str:
     """Write the MJCF of arm and scene.
 
     Bodies `link1` to `link6` lie in the Denavit-Hartenberg frames, so that a body's pose is that of `link_frames`;
@@ -40,6 +40,7 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
         scene: floor, obstacles, keep-out zones and carried object, in the world.
         arm: that stands in the scene.
         timestep: of the simulation [s].
+        held: a body that is fixed to the last link.
 
     Raises:
         UnusableInput: a shape of the scene is neither box, cylinder, sphere nor mesh.
@@ -58,7 +59,7 @@ def write_mjcf(scene: Scene, arm: Arm, *, timestep: float = 0.001) -> str:
             f'<geom name="floor" type="plane" size="0 0 1" pos="0 0 {float(scene.floor)!r}" {_OBSTACLE_CONTACTS}/>',
             *[_fixed(f"obstacle:{shape.name}", shape, _OBSTACLE_CONTACTS) for shape in convex_shapes(scene.obstacles)],
             *[_fixed(f"zone:{shape.name}", shape, _ZONE_CONTACTS) for shape in convex_shapes(scene.keep_out)],
-            *_arm(arm),
+            *_arm(arm, held),
             *([_carried(scene.carried)] if scene.carried else []),
             "</worldbody>",
             *([_grasp(arm)] if scene.carried else []),
@@ -96,10 +97,10 @@ def _motors(arm: Arm) -> list[str]:
     return [_motor(i + 1, link) for i, link in enumerate(arm.links)]
 
 
-def _arm(arm: Arm) -> list[str]:
+def _arm(arm: Arm, held: str) -> list[str]:
     if arm.model is not None:
         solids = [_link_solid(solid) for solid in gripper_solids(arm)]
-        return list(serial_bodies(arm.model, [*solids, *_gripper(arm)] if arm.has_gripper else []))
+        return list(serial_bodies(arm.model, [*([*solids, *_gripper(arm)] if arm.has_gripper else []), held]))
     zero = link_frames(np.zeros(arm.joint_count), arm)
     lines: list[str] = []
     for i, link in enumerate(arm.links, start=1):
@@ -115,7 +116,7 @@ def _arm(arm: Arm) -> list[str]:
             f'diaginertia="{numbers(physical_inertia(link))}"/>',
             *_solids_of(i, arm),
         ]
-    lines += [*_gripper(arm), *_payload(arm.payload)]
+    lines += [*_gripper(arm), *_payload(arm.payload), held]
     return lines + ["</body>"] * len(arm.links)
 
 

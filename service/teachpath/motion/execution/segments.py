@@ -165,5 +165,6 @@ def plan_return_path(
     stops = joint_waypoints(model, start_q, goal_q, settings, load=load, gripper_open=opened, move_name=what)
     limits = arm.limits.motion.scaled(*[settings.move_share] * 3)
     legs = [(a, b) for a, b in pairwise(stops) if np.abs(b - a).max() >= MIN_MOVE]
-    dynamics = Dynamics(arm, carried if load is not None and load.grasp_pose is not None else None)
+    grasp_pose = None if load is None else load.grasp_pose
+    dynamics = Dynamics(arm, None if grasp_pose is None else carried, grasp_pose)
     return [move_within_torques(a, b, limits, dynamics, arm, what) for a, b in legs]

@@ -9,7 +9,7 @@ import numpy as np
 from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.mounting import check_mounting
-from teachpath.motion.collision.collision_model import CollisionModel
+from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
 from teachpath.motion.paths.enumeration import enumerate_candidates
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
@@ -77,7 +77,9 @@ def _certified_plan(
     path: LearnedPath, tool_path: ToolPath, candidate: Candidate, model: CollisionModel, settings: MotionSettings
 ) -> Plan:
     """Time a candidate, find its approach and retreat, and certify it; raises PathRefused where one of them fails."""
-    timed = time_within_torques(tool_path, candidate, Dynamics(model.arm, model.scene.carried), settings)
+    load = grasped_load(model, candidate.joints[0])
+    dynamics = Dynamics(model.arm, model.scene.carried, load.grasp_pose if load else None)
+    timed = time_within_torques(tool_path, candidate, dynamics, settings)
     clearance = path_clearance(tool_path, candidate, model, settings, timed.joints)
     start, goal = timed.joints.joints[0], timed.joints.joints[-1]
     above_start = find_approach(model, start, settings)

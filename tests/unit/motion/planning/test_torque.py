@@ -95,13 +95,14 @@ def test_a_move_keeps_the_motors_torques_whatever_the_arm_carries() -> None:
 
 
 def test_the_share_of_acceleration_left_is_the_largest_that_the_motors_bear() -> None:
-    dynamics = Dynamics(ARM, replace(LOAD, size=(0.25, 0.25, 0.25)))
+    dynamics = Dynamics(ARM, replace(LOAD, size=(0.25, 0.25, 0.25)), np.eye(4))
     left = dynamics.acceleration_share(Q, V, ARM.limits.acceleration)
     assert 0.0 < left < 1.0
     assert np.max(dynamics.torque_bounds(Q, V, left * ARM.limits.acceleration) / ARM.limits.torque) == pytest.approx(
         1.0
     )
-    assert Dynamics(ARM, replace(LOAD, size=(0.6, 0.6, 0.6))).acceleration_share(Q, V, ARM.limits.acceleration) < 0.0
+    heavy = Dynamics(ARM, replace(LOAD, size=(0.6, 0.6, 0.6)), np.eye(4))
+    assert heavy.acceleration_share(Q, V, ARM.limits.acceleration) < 0.0
 
 
 def test_the_certified_torques_bound_those_of_the_plan() -> None:
