@@ -147,7 +147,7 @@ def test_a_stop_needs_no_token_and_is_never_refused(guarded: Guarded) -> None:
     refused(guarded.desk.post("/executions/moon/stop", headers=bad), 404, "no execution 'moon'")
 
 
-def test_a_websocket_needs_its_capability(guarded: Guarded) -> None:
+def test_a_websocket_needs_its_capability(guarded: Guarded, caplog: pytest.LogCaptureFixture) -> None:
     for address, need in (
         ("events", "view"),
         ("view", "view"),
@@ -164,6 +164,10 @@ def test_a_websocket_needs_its_capability(guarded: Guarded) -> None:
     with pytest.raises(InvalidStatus) as found:
         connect(url, additional_headers=guarded.headers(Capability.VIEW))
     assert found.value.response.status_code == 403
+    with connect(url, additional_headers=guarded.headers(Capability.DEMONSTRATE)):
+        assert not [
+            line for line in caplog.records if line.levelname == "ERROR"
+        ]  # a refusal is no fault of the station
 
 
 # who it is
