@@ -12,7 +12,7 @@ from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 PIECES = 30
 PROGRAMS = 10  # per duration
-SHORTER = (0.8, 0.9, 0.95, 0.98)  # factors of the duration that are tried, the most daring first
+SHORTER = (0.8, 0.9, 0.95, 0.98, 0.99, 0.995)  # factors of the duration that are tried, the most daring first
 KEPT = 5e-3  # violation that counts as none
 FURTHEST = 0.01  # s, that tau may move in one program
 
