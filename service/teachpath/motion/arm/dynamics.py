@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import mujoco
 import numpy as np
 
-from teachpath.motion.arm.held_object import HELD_BODY, RigidBody, UnknownGrasp
+from teachpath.motion.arm.held_object import HELD_BODY, GraspPointMotion, RigidBody, UnknownGrasp
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.mjcf import write_mjcf
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.arm.torque_variation import MovingMass, TorqueVariation, lever_arms
+from teachpath.motion.arm.torque_variation import MovingMass, TorqueVariation
 from teachpath.records import Scene, Shape
 
 COULOMB_FADE_SPEED: Final = 0.02  # rad/s, joint speed below which Coulomb friction fades out
@@ -39,8 +39,7 @@ class Dynamics:
             body = RigidBody.of_shape(carried)
             self.carried_mass = body.mass
             if grasp_pose is None:
-                radius = float(np.linalg.norm(arm.tool_matrix[:3, 3]))
-                self._grasp = UnknownGrasp(body, lever_arms(arm.joint_count, radius, arm))
+                self._grasp = UnknownGrasp(body)
                 body, grasp_pose = body.as_point(), np.eye(4)
             held = body.write_mjcf(arm.tool_matrix @ grasp_pose)
         self._model = mujoco.MjModel.from_xml_string(write_mjcf(Scene("nothing"), arm, held=held))
@@ -60,7 +59,7 @@ class Dynamics:
 
         Siciliano et al., Robotics, Springer 2009, eq. (7.42), with the motors' inertia, viscous and Coulomb friction.
         """
-        inertia, gravity, coriolis = self._terms(q, velocity)
+        inertia, gravity, coriolis, _ = self._terms(q, velocity)
         friction = self._viscous * velocity + self._coulomb * np.tanh(velocity / COULOMB_FADE_SPEED)
         return np.asarray(np.einsum("nij,nj->ni", inertia, acceleration) + gravity + coriolis + friction)
 
@@ -72,11 +71,12 @@ class Dynamics:
             velocity: (n, joints) at full speed; the arm may be slower, forward or backward.
             acceleration: (joints,) limits, which may be used in any combination of signs.
         """
-        inertia, gravity, coriolis = self._terms(q, velocity)
+        inertia, gravity, coriolis, grasp_point = self._terms(q, velocity)
         # Gravity does not depend on the rate, Coriolis and centrifugal torques grow with its square.
         steady = np.maximum(np.abs(gravity), np.abs(gravity + coriolis))
-        friction = np.abs(self._viscous * velocity) + self._coulomb
-        return np.asarray(np.abs(inertia) @ acceleration + steady + friction + self._loose(velocity, acceleration))
+        if self._grasp is not None:
+            steady = steady + self._grasp.largest_torques(grasp_point, acceleration)
+        return np.asarray(np.abs(inertia) @ acceleration + steady + np.abs(self._viscous * velocity) + self._coulomb)
 
     def motion_bounds(self, states: Array, turns: Array, period: float, stride: int = 1) -> Array:
         """Return upper bounds (m, joints) [N m] of the torques at any moment of n periods, a row for each stride.
@@ -90,17 +90,19 @@ class Dynamics:
         """
         begins = np.arange(0, len(turns), stride)
         q, velocity, acceleration = states[begins, 0], states[:, 1], states[:, 2]
-        inertia, gravity, coriolis = self._terms(q, velocity[begins])
+        inertia, gravity, coriolis, grasp_point = self._terms(q, velocity[begins])
         # What is linear in time is largest at an end of a period.
         ends = acceleration[np.minimum(begins[:, None] + np.arange(stride + 1), len(turns))]
-        largest = np.abs(np.einsum("nij,nkj->nki", inertia, ends) + (gravity + coriolis)[:, None]).max(axis=1)
+        torques = np.abs(np.einsum("nij,nkj->nki", inertia, ends) + (gravity + coriolis)[:, None])
+        if self._grasp is not None:
+            torques += self._grasp.torques(grasp_point, ends)
+        largest = torques.max(axis=1)
         speeds, accelerations = np.abs(velocity).max(axis=0), np.abs(acceleration).max(axis=0)
         changes = stride * period * accelerations
         turned = np.add.reduceat(turns, begins).max(axis=0)
         variation = self._variation.bound(turned, speeds, changes, accelerations)
         friction = self._viscous * (speeds + changes) + self._coulomb
-        loose = self._loose(speeds + changes, accelerations)
-        return np.asarray(largest + variation + friction + loose, dtype=np.float64)
+        return np.asarray(largest + variation + friction, dtype=np.float64)
 
     def acceleration_share(self, q: Array, velocity: Array, acceleration: Array) -> float:
         """Return the largest share of the acceleration limits (joints,) at which `torque_bounds` keep those of torque.
@@ -126,16 +128,12 @@ class Dynamics:
                 found.append(MovingMass(link, radius, model.body_mass[body], inertia))
         return found
 
-    def _loose(self, velocity: Array, acceleration: Array) -> Array | float:
-        """Return what an object can add that is held nobody knows how (see `UnknownGrasp.torques`)."""
-        return 0.0 if self._grasp is None else self._grasp.torques(velocity, acceleration)
-
-    def _terms(self, q: Array, velocity: Array) -> tuple[Array, Array, Array]:
-        """Return inertia matrices (n, joints, joints), torques (n, joints) of gravity and of speed."""
+    def _terms(self, q: Array, velocity: Array) -> _Terms:
         model, data = self._model, self._data
-        count = self._arm.joint_count
-        inertia, gravity, coriolis = np.empty((len(q), count, count)), np.empty_like(q), np.empty_like(q)
-        whole = np.empty((model.nv, model.nv))
+        count, rows = self._arm.joint_count, len(q)
+        inertia, gravity, coriolis = np.empty((rows, count, count)), np.empty_like(q), np.empty_like(q)
+        jacobians, felt = np.empty((rows, 2, 3, model.nv)), np.empty((rows, 6))
+        whole, held = np.empty((model.nv, model.nv)), -1 if self._grasp is None else model.body(HELD_BODY).id
         for row, (at, speed) in enumerate(zip(q, velocity, strict=True)):
             data.qpos[:count], data.qvel[:count] = at, 0.0
             mujoco.mj_fwdPosition(model, data)
@@ -146,7 +144,27 @@ class Dynamics:
             coriolis[row] = data.qfrc_bias[:count] - gravity[row]
             mujoco.mj_fullM(model, data, whole)
             inertia[row] = whole[:count, :count]
-        return inertia, gravity, coriolis
+            if held >= 0:
+                mujoco.mj_jacBody(model, data, *jacobians[row], held)
+                mujoco.mj_rnePostConstraint(model, data)  # accelerations: those of joints at a constant speed
+                mujoco.mj_objectAcceleration(model, data, mujoco.mjtObj.mjOBJ_BODY, held, felt[row], 0)
+        translation, turning = jacobians[:, 0, :, :count], jacobians[:, 1, :, :count]
+        spin = np.linalg.norm(np.einsum("nij,nj->ni", turning, velocity), axis=1) if held >= 0 else np.empty(rows)
+        return _Terms(
+            inertia, gravity, coriolis, GraspPointMotion(translation, turning, felt[:, 3:], felt[:, :3], spin)
+        )
+
+
+class _Terms(NamedTuple):
+    """Of n configurations: inertia matrices (n, joints, joints), torques (n, joints) of gravity and of speed.
+
+    `grasp_point` has numbers only where the grasp is unknown.
+    """
+
+    inertia: Array
+    gravity: Array
+    coriolis: Array
+    grasp_point: GraspPointMotion
 
 
 def _link_of(model: mujoco.MjModel, body: int) -> int:

@@ -16,6 +16,7 @@ from teachpath.records import Shape
 HELD_BODY: Final = "held"
 MAX_GRASP_DISTANCE: Final = 0.05  # [m] from grasp point to object's centre; an object farther off is not in the gripper
 GRAVITY: Final = 9.81  # [m/s^2]
+UPWARD: Final = np.array([0.0, 0.0, GRAVITY])  # [m/s^2] that a body at rest feels
 POINT_INERTIA: Final = 1e-9  # [kg m^2], of what counts as a point: MuJoCo wants some
 
 
@@ -53,36 +54,72 @@ class RigidBody:
         return RigidBody(self.mass, np.zeros(3), self.axes, np.full(3, POINT_INERTIA))
 
 
+@dataclass(frozen=True, eq=False)
+class GraspPointMotion:
+    """How the grasp point moves in n configurations, with the joints at a constant speed.
+
+    Attributes:
+        translation: (n, 3, joints) by which the joints move it [m/rad].
+        turning: (n, 3, joints) by which they turn the arm's last link [1].
+        pull: (n, 3) its acceleration, as a body feels it: with gravity [m/s^2].
+        bend: (n, 3) angular acceleration of the last link [rad/s^2].
+        spin: (n,) angular speed of the last link [rad/s].
+    """
+
+    translation: Array
+    turning: Array
+    pull: Array
+    bend: Array
+    spin: Array
+
+
 class UnknownGrasp:
     """Bounds what an object asks of the motors that is held near the grasp point, nobody knows how.
 
     Against the same mass at the grasp point, its weight and inertia act off that by its distance, and it resists
-    turning. With the sums of the joints' speeds s and accelerations a, the arm's last link turns by s at most, and that
-    changes by a + s^2; a point within L of every axis accelerates by at most L (a + s^2).
+    turning.
 
     Args:
         body: the object.
-        lever_arms: (joints,) bounds of the distance of the grasp point to each joint's axis [m].
 
     Attributes:
         distance: of the object's centre of mass from the grasp point, at most [m].
         inertia: its largest moment about its centre of mass [kg m^2].
     """
 
-    def __init__(self, body: RigidBody, lever_arms: Array) -> None:
+    def __init__(self, body: RigidBody) -> None:
         self.distance: float = MAX_GRASP_DISTANCE + float(np.linalg.norm(body.center))
         self.inertia: float = float(body.moments.max())
-        self._mass, self._lever_arms = body.mass, lever_arms
+        self._mass = body.mass
 
-    def torques(self, velocity: Array, acceleration: Array) -> Array:
-        """Return by how much torques (n, joints) [N m] can differ from those of the same mass at the grasp point.
+    def torques(self, motion: GraspPointMotion, accelerations: Array) -> Array:
+        """Return by how much torques (n, k, joints) [N m] can differ from those of the same mass at the grasp point.
 
         Args:
-            velocity: (n, joints) [rad/s].
-            acceleration: (n, joints) or (joints,), of any signs [rad/s^2].
+            motion: in n configurations.
+            accelerations: (n, k, joints) of the joints in each of them [rad/s^2].
         """
-        speed = np.abs(velocity).sum(axis=-1, keepdims=True)
-        turning = np.abs(acceleration).sum(axis=-1, keepdims=True) + speed**2
-        pull = GRAVITY + self._lever_arms.max() * turning  # [m/s^2] of the grasp point
-        shifted = self._mass * self.distance * (pull + (self._lever_arms + self.distance) * (turning + speed**2))
-        return np.asarray(shifted + self.inertia * (turning + speed**2), dtype=np.float64)
+        pull = motion.pull[:, None] + np.einsum("nij,nkj->nki", motion.translation, accelerations)
+        bend = motion.bend[:, None] + np.einsum("nij,nkj->nki", motion.turning, accelerations)
+        return self._bounds(motion, np.linalg.norm(pull, axis=2), np.linalg.norm(bend, axis=2))
+
+    def largest_torques(self, motion: GraspPointMotion, acceleration: Array) -> Array:
+        """Return the same (n, joints) for all accelerations up to `acceleration` (joints,), of any signs.
+
+        The arm may be slower, too: `motion` is that at full speed.
+        """
+        still = np.linalg.norm(motion.pull - UPWARD, axis=1) + GRAVITY
+        pull = still + np.linalg.norm(motion.translation, axis=1) @ acceleration
+        bend = np.linalg.norm(motion.bend, axis=1) + np.linalg.norm(motion.turning, axis=1) @ acceleration
+        return np.asarray(self._bounds(motion, pull[:, None], bend[:, None])[:, 0])
+
+    def _bounds(self, motion: GraspPointMotion, pull: Array, bend: Array) -> Array:
+        """Return bounds (n, k, joints) for an acceleration `pull` and an angular one `bend` (n, k).
+
+        The object's centre accelerates otherwise than the grasp point by its distance times `whirl`; a moment of
+        inertia asks for at most that much, too.
+        """
+        whirl = (bend + motion.spin[:, None] ** 2)[:, :, None]
+        lever_arms = np.linalg.norm(motion.translation, axis=1)[:, None] + self.distance
+        shifted = self._mass * self.distance * (pull[:, :, None] + lever_arms * whirl)
+        return np.asarray(shifted + self.inertia * whirl, dtype=np.float64)

@@ -48,7 +48,7 @@ class TorqueVariation:
         self._first = np.zeros((count,) * 3)  # of the inertia matrix [kg m^2/rad]
         self._second = np.zeros((count,) * 4)
         for body in masses:
-            self._add(body, lever_arms(body.link, body.radius, arm))
+            self._add(body, _lever_arms(body, arm))
 
     def bound(self, turns: Array, speeds: Array, speed_changes: Array, accelerations: Array) -> Array:
         """Return by how much torques without friction change at most (joints,) [N m], the accelerations being the same.
@@ -81,22 +81,16 @@ class TorqueVariation:
         self._second[np.ix_(joints, joints, joints, joints)] += m * second + INERTIA_TURNS[1] * body.inertia
 
 
-def lever_arms(link: int, radius: float, arm: Arm) -> Array:
-    """Return bounds (joints,) on the distance of a point of a link to each joint's axis, wherever the arm is [m].
-
-    Args:
-        link: to which the point is fixed, from 1.
-        radius: of the point from the origin of that link's frame [m].
-        arm: of the link.
-    """
-    found, far = np.zeros(arm.joint_count), radius
+def _lever_arms(body: MovingMass, arm: Arm) -> Array:
+    """Return bounds (joints,) on the distance of the body's centre of mass to each joint's axis, wherever it is [m]."""
+    lever_arms, far = np.zeros(arm.joint_count), body.radius
     if arm.model is not None:
-        radii = np.zeros(link)
-        radii[-1] = radius
-        found[:link] = serial_lever_arms(radii, arm.model)
-        return found
-    for joint in range(link - 1, -1, -1):
-        row = arm.links[joint]
-        found[joint] = abs(row.a) + far
-        far += float(np.hypot(row.a, row.d))
-    return found
+        radii = np.zeros(body.link)
+        radii[-1] = body.radius
+        lever_arms[: body.link] = serial_lever_arms(radii, arm.model)
+        return lever_arms
+    for joint in range(body.link - 1, -1, -1):
+        link = arm.links[joint]
+        lever_arms[joint] = abs(link.a) + far
+        far += float(np.hypot(link.a, link.d))
+    return lever_arms

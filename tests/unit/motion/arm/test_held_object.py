@@ -25,6 +25,7 @@ Q, V, A = (RNG.uniform(-1.0, 1.0, (30, 6)) * span for span in (2.5, 1.5, 8.0))
 
 
 def grasp(rng: np.random.Generator) -> np.ndarray:
+    """Return a pose to the tool from an object that the gripper holds as far off as it can."""
     pose = np.eye(4)
     pose[:3, :3] = Rotation.random(random_state=rng.integers(10**6)).as_matrix()
     away = rng.normal(size=3)

@@ -13,6 +13,7 @@ from teachpath.motion.execution.teleop_checks import TORQUE_STRIDES, MotionCheck
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.constant_jerk import ConstantJerkMotion
 from teachpath.records import Scene, Shape
+from tests.unit.motion.arm.test_held_object import grasp
 from tests.unit.motion.collision.test_boundaries import over
 
 ARM = Arm.of_variant()
@@ -109,13 +110,14 @@ def weakness(check: TorqueCheck, motion: ConstantJerkMotion) -> str:
     return said[-1] if all(said) else ""
 
 
-def test_what_is_proved_for_the_motors_holds_with_the_object_and_without_it() -> None:
-    chest = Shape("chest", "box", (0.3, 0.3, 0.3), (0.5, 0.1, 0.15))  # 8 kg
+def test_what_is_proved_for_the_motors_holds_with_the_object_however_it_is_held_and_without_it() -> None:
+    chest = Shape("chest", "box", (0.3, 0.3, 0.3), (0.5, 0.1, 0.15), mass=7.0)
     heavy, none = (
         TorqueCheck(CollisionModel(Scene("s", carried=chest), ARM)),
         TorqueCheck(CollisionModel(Scene("s"), ARM)),
     )
-    cases, rng, proved, refused = (Dynamics(ARM), Dynamics(ARM, chest)), np.random.default_rng(11), 0, 0
+    grasps, rng, proved, refused = np.random.default_rng(4), np.random.default_rng(11), 0, 0
+    cases = (Dynamics(ARM), *(Dynamics(ARM, chest, grasp(grasps)) for _ in range(12)))
     for _ in range(40):
         motion = swing(*(HOME + rng.uniform(-0.25, 0.25, (2, 6))), periods=int(rng.integers(40, 125)))
         said = weakness(heavy, motion)
