@@ -119,6 +119,7 @@ def cut(server: Server, folder: Path, seconds: float) -> Outcome:
         wait_until(ended, "every job has ended")
         for member in members:
             member.bench.received(member.shown * SHOWN)
+            wait_until(lambda member=member: not member.bench.recorder.faults(), "every take has its row")
         made = near.store.demonstrations(TASK)
         return Outcome(
             [near.store.job(job.id) for job in jobs],

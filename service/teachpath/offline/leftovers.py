@@ -44,7 +44,8 @@ def remove_leftovers(data_dir: Path, kept_transfers: Collection[str]) -> None:
 def note_unnamed(store: Store) -> None:
     """Let health say of recordings that no row names, as after a database was lost, and log the torn ones."""
     named, recordings = store.checks.named_recordings(), store.recordings
-    places = map(recordings.place, recordings.finished())
+    kept = recordings.kept_rows.places()  # which the recorder stores
+    places = set(map(recordings.place, recordings.finished())) - kept
     unnamed = sum(place not in named and recordings.objects.address(place) not in named for place in places)
     if unfinished := len(recordings.unfinished()):
         log.warning("%d recordings were cut off; look at them with: teachpath doctor", unfinished)

@@ -11,10 +11,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
+from teachpath.recorder.row_queue import RowQueue
 from teachpath.recorder.take import FinishedTake, Take, TakeOutcome
 from teachpath.recording.phases import TransportSpan
-from teachpath.records import ObjectPose, StreamStatistics, Vector
+from teachpath.records import Demonstration, ObjectPose, StreamStatistics, Trajectory, Vector
 
+WAITS = "the recording is whole, and its row is stored as soon as that is possible"
 MAX_WAITING = 16  # takes of one recording; while more wait, its samples stay in their queue, which is limited
 
 log: logging.Logger = logging.getLogger("teachpath")
@@ -43,7 +45,7 @@ class ClosedTake:
     settle: Callable[[TakeOutcome], None]
 
     def finalize(self) -> TakeOutcome:
-        """Make and store its demonstration, as `Take.finalize`."""
+        """Make its demonstration, as `Take.finalize`."""
         return self.take.finalize(self.cut, self.statistics, self.carried, self.object_pose, self.fault)
 
 
@@ -65,13 +67,23 @@ class Completer(Protocol):
 
 
 class DirectCompleter:
-    """Completes takes at once, on the thread of the caller."""
+    """Completes takes at once, on the thread of the caller.
+
+    Args:
+        store: stores a demonstration and returns it with its number; what it raises ends the recording.
+    """
 
     is_behind = False
+
+    def __init__(self, store: Callable[[Demonstration], Demonstration]) -> None:
+        self._store = store
 
     def complete(self, closed: ClosedTake) -> FinishedTake | None:
         """Complete a take now."""
         outcome = closed.finalize()
+        if outcome.finished is not None:
+            demonstration, trajectory = outcome.finished
+            outcome = TakeOutcome((self._store(demonstration), trajectory))
         closed.settle(outcome)
         return outcome.finished
 
@@ -89,15 +101,21 @@ class TakeQueue:
     Args:
         pool: may be shared with other recordings; a long take keeps one of its threads busy.
         condition: held while a take is settled, and notified when all are.
-        on_finished: called with each demonstration, on a thread of the pool.
+        on_finished: called with each demonstration that is stored, on a thread of the pool, or of the rows.
+        rows: stores their rows.
     """
 
     def __init__(
-        self, pool: Executor, condition: threading.Condition, on_finished: Callable[[FinishedTake], None]
+        self,
+        pool: Executor,
+        condition: threading.Condition,
+        on_finished: Callable[[FinishedTake], None],
+        rows: RowQueue,
     ) -> None:
         self._pool = pool
         self._condition = condition
         self._on_finished = on_finished
+        self._rows = rows
         self._actions: deque[Callable[[], None]] = deque()
         self._is_running = False
 
@@ -146,9 +164,19 @@ class TakeQueue:
     def _complete(self, closed: ClosedTake) -> None:
         try:
             outcome = closed.finalize()
+            if outcome.finished is not None:
+                demonstration, trajectory = outcome.finished
+                reason = self._rows.add(demonstration, partial(self._settle_stored, closed, trajectory))
+                if not reason:
+                    return
+                note = f"{WAITS}: {reason}"
+                outcome = TakeOutcome(None, (note,), row_waits=True)
         except Exception as error:  # one take's fault must not end the others
             outcome = closed.take.lose(f"recording failed: {error!r}")
         with self._condition:
             closed.settle(outcome)
-        if outcome.finished is not None:
-            self._on_finished(outcome.finished)
+
+    def _settle_stored(self, closed: ClosedTake, trajectory: Trajectory, stored: Demonstration) -> None:
+        with self._condition:
+            closed.settle(TakeOutcome((stored, trajectory)))
+        self._on_finished((stored, trajectory))

@@ -18,6 +18,7 @@ from teachpath.recorder.recording_setup import Lookup, RecordingSetup, check_req
 from teachpath.recorder.recording_thread import RecordingThread
 from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recorder.resumption import Resumption
+from teachpath.recorder.row_queue import RowQueue
 from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.sample_totals import RecordingTotals, SampleTotals
 from teachpath.recorder.session import RecordingSession
@@ -65,6 +66,7 @@ class Recorder:
     Attributes:
         annotations: changes stored demonstrations.
         owners: which session each tracker's name belongs to.
+        rows: stores the rows of takes.
     """
 
     def __init__(
@@ -89,12 +91,14 @@ class Recorder:
         self.owners: TrackerOwners = TrackerOwners(keys, clock)
         self._presence = Presence(clock)
         self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
+        self.rows: RowQueue = RowQueue(store)
         self._recording = RecordingThread(
             self._queues,
             self._presence,
             settings,
             on_finished=self._report_finished,
             on_discard_request=self._discard_last_of,
+            rows=self.rows,
             clock=clock,
         )
         self.annotations: Annotations = Annotations(
@@ -119,6 +123,7 @@ class Recorder:
 
     def start(self) -> None:
         """Go on with the recordings that the last stop left, and begin to listen."""
+        self.rows.start()
         self._resumption.start()
         self._recording.start()
         self._feedback.start()
@@ -133,6 +138,7 @@ class Recorder:
             handle.close()
         self._resumption.stop()
         self._store.recordings.suspensions.keep(self._recording.stop())
+        self.rows.stop()
         self._feedback.stop()
 
     def begin(self, request: RecordingRequest) -> RecordingStatus:
@@ -228,7 +234,7 @@ class Recorder:
             return self._totals.with_running(running)
 
     def wait_for_takes(self) -> None:
-        """Wait until the takes that have ended are stored; their recordings go on meanwhile."""
+        """Wait until the takes that have ended are stored, or wait for the database; their recordings go on."""
         self._recording.wait_for_takes()
 
     def trackers(self) -> list[Tracker]:
@@ -247,7 +253,7 @@ class Recorder:
             found = [f"{session.tracker}: {session.fault}" for session in sessions if session.fault]
         if self._missed:
             found.append(f"Zenoh reports {self._missed} samples that never came")
-        found += self.owners.faults()
+        found += self.owners.faults() + self.rows.faults()
         return found + [sentence for sentence in [self._queues.invalid_names()] if sentence]
 
     def is_writing(self) -> bool:
@@ -255,7 +261,7 @@ class Recorder:
         return self._recording.is_writing()
 
     def kept_idle(self, task: str) -> AbstractContextManager[None]:
-        """Let no recording of a task begin in the block, and all takes be stored; raises Conflict where one runs."""
+        """Let no recording of a task begin in the block, and all takes be stored; raises Conflict where not."""
         return self._recording.kept_idle(task)
 
     def task_of(self, tracker: str) -> str:
@@ -285,6 +291,8 @@ class Recorder:
             log.exception("demonstration %s is stored, but could not be shown", demonstration.id)
 
     def _discard_last_of(self, session: RecordingSession) -> None:
+        if self.rows.discard_newest(session.tracker):
+            return
         kept = (key for key in reversed(session.demonstrations) if not self._store.demonstration(key).discarded_ns)
         if (newest := next(kept, None)) is not None:
             self.annotations.amend(newest, Amendment(discarded=True))

@@ -14,6 +14,7 @@ from teachpath.io.wire import decode_sample
 from teachpath.periodic_thread import PeriodicThread
 from teachpath.recorder.closed_take import TakeQueue
 from teachpath.recorder.presence import Presence
+from teachpath.recorder.row_queue import RowQueue
 from teachpath.recorder.sample_queues import QueueItem, SampleQueues
 from teachpath.recorder.suspendable_session import SuspendableSession
 from teachpath.recorder.take import FinishedTake
@@ -36,6 +37,7 @@ class RecordingThread:
         on_finished: called with new demonstrations, on a thread that completes takes.
         on_discard_request: called, on such a thread, with a recording whose hand commands to discard its last
             demonstration.
+        rows: stores the rows of takes.
         clock: [s] monotonic.
 
     Attributes:
@@ -52,6 +54,7 @@ class RecordingThread:
         *,
         on_finished: Callable[[FinishedTake], None],
         on_discard_request: Callable[[SuspendableSession], None],
+        rows: RowQueue,
         clock: Callable[[], float],
     ) -> None:
         self._queues = queues
@@ -59,6 +62,7 @@ class RecordingThread:
         self._settings = settings
         self._on_finished = on_finished
         self._on_discard_request = on_discard_request
+        self._rows = rows
         self._clock = clock
         self.sessions: dict[str, SuspendableSession] = {}
         self.condition: threading.Condition = threading.Condition()
@@ -99,7 +103,7 @@ class RecordingThread:
 
     def take_queue(self) -> TakeQueue:
         """Return what completes the takes of one recording, beside those of the others."""
-        queue = TakeQueue(self._completing, self.condition, self._on_finished)
+        queue = TakeQueue(self._completing, self.condition, self._on_finished, self._rows)
         self._take_queues.add(queue)
         return queue
 
@@ -109,7 +113,7 @@ class RecordingThread:
             return bool(self.sessions) or any(queue.is_running for queue in list(self._take_queues))
 
     def wait_for_takes(self) -> None:
-        """Wait until the takes that have ended are stored."""
+        """Wait until the takes that have ended are stored, or their rows wait for the database."""
         with self.condition:
             sessions = list(self.sessions.values())
         for session in sessions:
@@ -117,7 +121,7 @@ class RecordingThread:
 
     @contextmanager
     def kept_idle(self, task: str) -> Iterator[None]:
-        """Let no recording of a task begin in the block, and all takes be stored; raises Conflict where one runs."""
+        """Let no recording of a task begin in the block, and all takes be stored; raises Conflict where not."""
         with self.beginning:
             with self.condition:
                 running = sorted(tracker for tracker, session in self.sessions.items() if session.task == task)
@@ -125,6 +129,7 @@ class RecordingThread:
                 raise Conflict(f"task {task} is being recorded from {', '.join(running)}; stop that first")
             for queue in list(self._take_queues):
                 queue.wait()
+            self._rows.require_stored(task)
             yield
 
     def drain(self, session: SuspendableSession) -> None:

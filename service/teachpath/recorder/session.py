@@ -47,7 +47,7 @@ class RecordingSession:
         completer: Completer | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.completer: Completer | DirectCompleter = completer or DirectCompleter()
+        self.completer: Completer | DirectCompleter = completer or DirectCompleter(store.add_demonstration)
         self._store, self._settings, self._setup = store, settings, setup
         self._clock = clock
         # Its current interval is that of the open take.
@@ -271,12 +271,15 @@ class RecordingSession:
         return self.completer.complete(closed)
 
     def _settle(self, take: Take, expected: bool, outcome: TakeOutcome) -> None:
-        """Take note of what became of a take that was `expected` to be a demonstration; another may be open."""
+        """Take note of what became of a take that was `expected` to be a demonstration; another may be open.
+
+        One whose row waits is settled again when it is stored.
+        """
         for note in outcome.notes:
             self.counter.note(note, in_interval=False)
         if outcome.finished is not None:
             self.demonstrations.append(outcome.finished[0].id)
-        else:
+        elif not outcome.row_waits:
             self._idle += len(take.samples)
             self._state_machine.withdraw_take(counted=expected)
 

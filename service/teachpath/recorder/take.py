@@ -6,7 +6,7 @@ import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from teachpath.errors import StorageUnavailable, UnusableRecording
+from teachpath.errors import UnusableRecording
 from teachpath.io.store.recordings import RecordingFile
 from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.sample_rows import SampleRows
@@ -21,10 +21,15 @@ FinishedTake = tuple[Demonstration, Trajectory]
 
 @dataclass(frozen=True, slots=True)
 class TakeOutcome:
-    """What became of a take that was completed: a demonstration, or sentences for the operator why there is none."""
+    """What became of a take that was completed: a demonstration, or sentences for the operator why there is none yet.
+
+    Attributes:
+        row_waits: its recording is whole, and its row is stored later.
+    """
 
     finished: FinishedTake | None
     notes: tuple[str, ...] = ()
+    row_waits: bool = False
 
 
 def random_id() -> str:
@@ -125,7 +130,7 @@ class Take:
         object_pose: ObjectPose | None,
         fault: str,
     ) -> TakeOutcome:
-        """Make and store its demonstration; if that is impossible, say why, and leave no file.
+        """Finish its file and make its demonstration, which is still to be stored; or say why not, and leave no file.
 
         Nothing may be written meanwhile. It may be called on another thread, because it changes this take alone.
 
@@ -142,7 +147,7 @@ class Take:
             identity = {"id": self._id, "task": self._header.task, "source": self._header.tracker}
             samples, calibration = self.samples.arrays(), self._header.calibration
             take = SegmentedTake(samples, cut, statistics, calibration, carried, object_pose, fault)
-            return TakeOutcome(complete_take(self._store, self._settings, self._file, take, identity))
+            return TakeOutcome(complete_take(self._store.recordings, self._settings, self._file, take, identity))
         except UnusableRecording as error:
             self.discard()
             if self.fault:
@@ -150,21 +155,11 @@ class Take:
             return TakeOutcome(None, (str(error),))
         except OSError as error:
             return self.lose(_disk_fault("finished", error))
-        except StorageUnavailable as error:
-            return self.lose(
-                f"the recording is whole, and its row could not be stored: {error}",
-                f"its recording is whole, but {error}; its row is made by: teachpath doctor",
-            )
 
-    def lose(self, fault: str, reason: str = "") -> TakeOutcome:
-        """Make no demonstration because of a fault, and leave the file for the doctor.
-
-        Args:
-            fault: for the operator of the recording.
-            reason: for health; the fault when empty.
-        """
+    def lose(self, fault: str) -> TakeOutcome:
+        """Make no demonstration because of a fault, and leave the file for the doctor."""
         self._leave(fault)
-        self._note_lost(reason or fault)
+        self._note_lost(fault)
         return TakeOutcome(None, (fault,))
 
     def _leave(self, fault: str) -> None:

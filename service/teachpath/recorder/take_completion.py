@@ -1,4 +1,4 @@
-"""How a take becomes a demonstration: assess its quality, finish its file, store its row."""
+"""How a take becomes a demonstration: assess its quality, finish its file, make its row."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ import numpy as np
 
 from teachpath.errors import UnusableRecording
 from teachpath.io.store.recording_facts import facts_of
-from teachpath.io.store.recordings import RecordingFile
-from teachpath.io.store.store import Store
+from teachpath.io.store.recordings import RecordingFile, Recordings
 from teachpath.recording.advice import ending_advice
 from teachpath.recording.demonstration import carried_numbers, object_trajectory, place_of, to_world, usable_samples
 from teachpath.recording.grip_flaps import find_grip_flaps
@@ -59,15 +58,19 @@ class SegmentedTake:
 
 
 def complete_take(
-    store: Store, settings: RecordingSettings, file: RecordingFile, take: SegmentedTake, identity: Mapping[str, str]
+    recordings: Recordings,
+    settings: RecordingSettings,
+    file: RecordingFile,
+    take: SegmentedTake,
+    identity: Mapping[str, str],
 ) -> tuple[Demonstration, Trajectory]:
-    """Finish the file of a take and store its demonstration.
+    """Finish the file of a take, and return its demonstration, which is still to be stored.
 
     Args:
         identity: id, task and source of the demonstration.
 
     Raises:
-        UnusableRecording: the transport phase is too short; nothing was finished or stored.
+        UnusableRecording: the transport phase is too short; nothing was finished.
         OSError: the file cannot be finished.
     """
     take, cut = replace(take, samples=SampleColumns.of(take.samples)), take.cut
@@ -99,10 +102,7 @@ def complete_take(
         object_pose=take.object_pose,
     )
     finished = file.finish(facts_of(demonstration))
-    stored = store.add_demonstration(
-        replace(demonstration, recording=store.recordings.place(finished), digest=file.digest)
-    )
-    return stored, trajectory
+    return replace(demonstration, recording=recordings.place(finished), digest=file.digest), trajectory
 
 
 def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tuple[StreamStatistics, tuple[int, ...]]:

@@ -10,6 +10,7 @@ from teachpath.io.store.salvage import salvage
 from teachpath.io.store.store import Store
 from teachpath.recorder.closed_take import TakeQueue
 from teachpath.recorder.recording_setup import RecordingSetup
+from teachpath.recorder.row_queue import RowQueue
 from teachpath.recorder.session import RecordingSession
 from teachpath.recorder.take import FinishedTake
 from teachpath.recording.settings import RecordingSettings
@@ -39,7 +40,7 @@ def recorded_later(store: Store, later: Later, routine: Routine) -> tuple[Record
     finished: list[FinishedTake] = []
     store.ensure_task("lift", scene="paper", calibration="identity")
     setup = RecordingSetup("lift", "glove", Calibration("identity"), SCENE, routine=routine)
-    queue = TakeQueue(later, threading.Condition(), finished.append)
+    queue = TakeQueue(later, threading.Condition(), finished.append, RowQueue(store))
     return RecordingSession(store, RecordingSettings(), setup, completer=queue), finished
 
 

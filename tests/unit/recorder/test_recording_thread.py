@@ -9,6 +9,7 @@ from teachpath.io.wire import encode_sample
 from teachpath.recorder.presence import Presence
 from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.recording_thread import BATCH_SIZE, FLUSH_INTERVAL, TURNS_IN_A_ROUND, RecordingThread
+from teachpath.recorder.row_queue import RowQueue
 from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.suspendable_session import SuspendableSession
 from teachpath.recording.settings import RecordingSettings
@@ -34,6 +35,7 @@ class Desk:
             SETTINGS,
             on_finished=lambda finished: None,
             on_discard_request=lambda session: None,
+            rows=RowQueue(store),
             clock=self._clock,
         )
         for tracker in trackers:

@@ -17,6 +17,7 @@ from typing import BinaryIO
 from teachpath.errors import NotFound, StorageUnavailable, UnusableRecording
 from teachpath.io import documents
 from teachpath.io.store.integrity import add_integrity
+from teachpath.io.store.kept_rows import KeptRows
 from teachpath.io.store.mcap_file import McapFile
 from teachpath.io.store.object_cache import CACHE, CACHE_SIZE, ObjectCache
 from teachpath.io.store.object_storage import ObjectStorage, is_address
@@ -133,12 +134,14 @@ class Recordings:
     Attributes:
         objects: the object storage.
         suspensions: what waits for the service's next start.
+        kept_rows: rows that wait for the database.
     """
 
     def __init__(self, root: Path, opener: Opener = open_new, url: str = "", cache_size: int = CACHE_SIZE) -> None:
         self._root, self._opener = root, opener
         self.objects: ObjectStorage = ObjectStorage(url)
         self.suspensions: Suspensions = Suspensions(root)
+        self.kept_rows: KeptRows = KeptRows(root)
         self._cache = ObjectCache(root.parent / CACHE, cache_size, self.objects)
 
     def begin(self, demonstration: str, header: RecordingHeader) -> RecordingFile:
