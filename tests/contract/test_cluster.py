@@ -23,6 +23,7 @@ from teachpath.jobs.settings import JobSettings, check_executor
 from teachpath.records import JobState
 from tests.contract.job_steps import add, die, hang, linger, refuse, tell, wait_once
 from tests.ports import free_ports
+from tests.system.proxy import Proxy
 from tests.unit.jobs.test_jobs import Bench
 from tests.waiting import HANG, wait_until
 
@@ -93,6 +94,24 @@ def test_a_job_waits_for_the_cluster_and_one_whose_worker_is_lost_is_done_by_ano
             released.touch()
             executor.close()
             cluster.close()
+
+
+def test_a_job_whose_scheduler_is_lost_waits_for_it_and_is_done_when_it_is_back(address: str, tmp_path: Path) -> None:
+    been, released, reports = tmp_path / "been", tmp_path / "released", queue.Queue[Any]()
+    with Proxy(int(address.rpartition(":")[2])) as line, ThreadPoolExecutor(1) as thread:
+        cluster = Cluster(f"tcp://127.0.0.1:{line.port}", reports)
+        executor = ClusterExecutor(cluster, LIMITS, reports)
+        lost = thread.submit(executor.work, "one", Work(wait_once), (been, released))
+        wait_until(been.exists, "the worker has begun the job")
+        line.drop(cut=True)
+        awaited(reports, "waits for the cluster: ")
+        wait_until(lambda: not is_there(int(been.read_text())), "the job's process has ended")
+        line.go_on()
+        assert lost.result(HANG) == "again"
+        assert executor.work("two", Work(add), (1, 2)) == 3
+        awaited(reports, "100% of the sum")
+        executor.close()
+        cluster.close()
 
 
 def test_a_job_ends_with_the_service_that_ordered_it(address: str, tmp_path: Path) -> None:

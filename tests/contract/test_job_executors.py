@@ -1,6 +1,7 @@
 """What every executor of jobs does, on the process of this machine and on a Dask cluster of one worker."""
 
 import os
+import queue
 import sys
 import threading
 from collections.abc import Iterator
@@ -17,7 +18,6 @@ from teachpath.jobs.cluster import open_cluster
 from teachpath.jobs.cluster_executor import ClusterExecutor
 from teachpath.jobs.executors import JobExecutor, Limits, Work
 from teachpath.jobs.local_executor import LocalExecutor
-from teachpath.process_server import CONTEXT
 from tests.contract.job_steps import add, devour, die_once, fault, hang, linger, negated, refuse, with_process
 from tests.waiting import HANG, wait_until
 
@@ -39,7 +39,7 @@ def scheduler() -> Iterator[str]:
 
 @pytest.fixture
 def reports() -> Any:
-    return CONTEXT.Queue()
+    return queue.Queue()
 
 
 @pytest.fixture(params=["local", "cluster"])

@@ -109,21 +109,24 @@ class Cluster:
     def close(self) -> None:
         """Leave the cluster."""
         with self._lock:
-            client, self._client = self._client, None
-        if client is not None:
-            client.close(timeout=CONNECT_TIMEOUT)
+            self._leave()
 
     def _connected(self) -> Client:
         from distributed import Client
 
         with self._lock:
-            if self._client is not None and self._client.status == "running":
-                return self._client
-            if self._client is not None:
-                self._client.close(timeout=0)
-            self._client = Client(self.address, timeout=CONNECT_TIMEOUT, set_as_default=False, name="teachpath")
+            if self._client is None or self._client.status != "running":
+                self._leave()
+                self._client = Client(self.address, timeout=CONNECT_TIMEOUT, set_as_default=False, name="teachpath")
+            # Always: the scheduler may have been lost, and the client have come back by itself, without the reports.
             self._client.subscribe_topic(_topic(self._client), self._report)
             return self._client
+
+    def _leave(self) -> None:
+        client, self._client = self._client, None
+        if client is not None:
+            with suppress(OSError, TimeoutError):  # it was lost
+                client.close(timeout=CONNECT_TIMEOUT)
 
     def _report(self, event: tuple[float, Any]) -> None:
         order, fraction, sentence = event[1]

@@ -9,10 +9,8 @@ import multiprocessing
 import platform
 import threading
 from collections import deque
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from multiprocessing.connection import Connection
 from typing import Any, Final
 
 from distributed import Status, Worker, get_worker
@@ -21,7 +19,7 @@ from teachpath.errors import Cancelled
 from teachpath.jobs.cluster import DAEMON
 from teachpath.jobs.executors import Limits, Work
 from teachpath.jobs.local_executor import LocalExecutor
-from teachpath.process_server import CONTEXT, start_process_server
+from teachpath.process_server import start_process_server
 
 COMPARED: Final = ("teachpath", "distributed", "numpy", "scipy", "numba", "hmmlearn", "ruckig", "mujoco-core")
 LOADED: Final = ("teachpath.offline.learning_job", "teachpath.learning.relearn", "teachpath.motion.planning.plan")
@@ -35,14 +33,15 @@ _cancelled: Final[deque[str]] = deque(maxlen=1000)  # of the service's orders, w
 
 
 @dataclass(frozen=True)
-class PipeReports:
-    """Reports of one process: no lock is left taken and no report is lost where the process is killed after it."""
+class EventReports:
+    """Sends reports to the service that listens to a topic."""
 
-    writer: Connection
+    worker: Worker
+    topic: str
 
     def put(self, report: tuple[str, float, str]) -> None:
         """Send a report."""
-        self.writer.send(report)
+        self.worker.log_event(self.topic, list(report))
 
 
 def versions() -> dict[str, str]:
@@ -64,23 +63,15 @@ def examine() -> dict[str, str]:
 def work_in_limits(order: str, work: Work, inputs: tuple[Any, ...], limits: Limits, topic: str) -> Any:
     """Do the middle step of a job for an order of a service, while that is there; raises as `LocalExecutor.work`."""
     start_process_server(LOADED)
-    reader, writer = CONTEXT.Pipe(duplex=False)
     worker, ended = get_worker(), threading.Event()
-
-    def pass_on() -> None:
-        with suppress(EOFError, OSError):  # the process has ended, maybe in the middle of a report
-            while True:
-                worker.log_event(topic, list(reader.recv()))
 
     def end_with_service() -> None:
         while not ended.wait(LOOK_INTERVAL):
             if not _is_wanted(worker, order):
                 executor.close()
 
-    executor = LocalExecutor(limits, PipeReports(writer))
-    reporter = threading.Thread(target=pass_on, name="job progress", daemon=True)
+    executor = LocalExecutor(limits, EventReports(worker, topic))
     watcher = threading.Thread(target=end_with_service, name="job watch", daemon=True)
-    reporter.start()
     watcher.start()
     try:
         with _lock:
@@ -94,9 +85,6 @@ def work_in_limits(order: str, work: Work, inputs: tuple[Any, ...], limits: Limi
             _running.pop(order, None)
         watcher.join()
         executor.close()
-        writer.close()
-        reporter.join()
-        reader.close()
 
 
 def _is_wanted(worker: Worker, order: str) -> bool:

@@ -32,7 +32,7 @@ class Work:
 
 
 class Reports(Protocol):
-    """Takes the reports of jobs: a queue, or one end of a pipe."""
+    """Takes the reports of jobs, from several threads."""
 
     def put(self, report: tuple[str, float, str]) -> None:
         """Take a report: key of the job, fraction, sentence."""

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
+from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Final
 
 from teachpath.errors import Cancelled, Conflict, NotFound, QueueFull, StorageUnavailable, TeachpathError
@@ -21,7 +22,6 @@ from teachpath.jobs.lanes import LaneName, Lanes
 from teachpath.jobs.settings import JobSettings
 from teachpath.jobs.shared_jobs import OwnJobs, SharedJobs
 from teachpath.logs import continue_request, request_number
-from teachpath.process_server import CONTEXT
 from teachpath.records import Job, JobKindName, JobState
 from teachpath_proto.keys import Keys
 
@@ -80,7 +80,7 @@ class Jobs:
         self._settings = settings
         self._kinds = kinds
         self._on_finished = on_finished
-        self._progress = CONTEXT.Queue()
+        self._progress: SimpleQueue[tuple[str, float, str] | None] = SimpleQueue()
         self._lanes = Lanes(settings, self._progress, self._run)
         self._lock = threading.Lock()
         self._requests: dict[str, str] = {}  # numbers of the requests that queued the unfinished jobs
@@ -117,8 +117,6 @@ class Jobs:
         self._progress.put(None)
         if self._reporter.ident is not None:
             self._reporter.join(timeout=10.0)
-        self._progress.close()
-        self._progress.cancel_join_thread()
 
     def require_room(self, submitter: str) -> None:
         """Raise QueueFull when no further job of a submitter can be queued."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import time
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
@@ -23,13 +24,14 @@ class LocalExecutor:
 
     Args:
         limits: of each job.
-        progress: receives the reports of the process: key of the job, fraction, sentence.
+        progress: receives the reports of the process, on a thread of its own: key of the job, fraction, sentence.
     """
 
     def __init__(self, limits: Limits, progress: Reports) -> None:
         self._limits = limits
-        self._cancel = CONTEXT.Event()
-        self._pool = KillablePool(worker.init_worker, progress, self._cancel, limits.memory)
+        # In memory that the process shares, without a lock: a process that is killed with one would keep it for ever.
+        self._cancel = CONTEXT.RawValue(ctypes.c_bool, False)
+        self._pool = KillablePool(worker.init_worker, self._cancel, limits.memory, on_report=progress.put)
 
     def begin(self) -> None:
         """Begin the process, which loads what jobs need, and return at once."""
@@ -38,15 +40,15 @@ class LocalExecutor:
 
     def renew(self) -> None:
         """Forget that the job before was cancelled."""
-        self._cancel.clear()
+        self._cancel.value = False
 
     def cancel(self) -> None:
         """Cancel the job under way, or the next one."""
-        self._cancel.set()
+        self._cancel.value = True
 
     def close(self) -> None:
         """Stop at once, even in the middle of a job; no other is begun."""
-        self._cancel.set()
+        self._cancel.value = True
         self._pool.close()
 
     def work(self, key: str, work: Work, inputs: tuple[Any, ...]) -> Any:
@@ -72,7 +74,7 @@ class LocalExecutor:
                 if future.done():
                     raise
             now = time.monotonic()
-            if self._cancel.is_set():
+            if self._cancel.value:
                 grace_end = min(grace_end, now + CANCEL_GRACE)
             if now > grace_end:
                 self._pool.kill()

@@ -9,8 +9,8 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.connection import Connection
 from typing import Any, TypeVar
 
-from teachpath.jobs.process_log import ProcessLog, write_to_service
-from teachpath.logs import continue_request, request_number
+from teachpath.jobs.process_pipe import ProcessPipe, log_to_service
+from teachpath.logs import continue_request, relay, request_number
 from teachpath.process_server import CONTEXT, process_start
 
 T = TypeVar("T")
@@ -23,15 +23,23 @@ class KillablePool:
     the service, under the number of the request that its call belongs to.
 
     Args:
-        initializer: called first in every new process.
-        initargs: arguments of the initializer.
+        initializer: called first in every new process; with `on_report`, its first argument is where it sends reports.
+        initargs: its other arguments.
         part: of the station, in the log.
+        on_report: called with what the process sends, on a thread of its own; None: it reports nothing.
     """
 
-    def __init__(self, initializer: Callable[..., object], *initargs: Any, part: str = "worker") -> None:
+    def __init__(
+        self,
+        initializer: Callable[..., object],
+        *initargs: Any,
+        part: str = "worker",
+        on_report: Callable[[Any], object] | None = None,
+    ) -> None:
         self._initializer = initializer
         self._initargs = initargs
         self._part = part
+        self._on_report = on_report
         self._lock = threading.Lock()
         self._executor: ProcessPoolExecutor | None = None
         self._closed = False
@@ -48,17 +56,18 @@ class KillablePool:
         with self._lock:
             if self._closed:
                 raise BrokenProcessPool("the pool is closed")
-            log = None
+            pipes: list[ProcessPipe] = []
             if self._executor is None:
-                log = ProcessLog(self._part)
-                initargs = (log.writer, self._part, self._initializer, self._initargs)
+                pipes = self._open_pipes()
+                writers = [pipe.writer for pipe in pipes]
+                initargs = (writers[0], self._part, self._initializer, (*writers[1:], *self._initargs))
                 self._executor = ProcessPoolExecutor(1, CONTEXT, _init_process, initargs)
             try:
                 with process_start():
                     return self._executor.submit(_call, request_number(), function, arguments)
             finally:
-                if log is not None:  # the process has begun with its first call
-                    log.leave_writer()
+                for pipe in pipes:  # the process has begun with its first call
+                    pipe.leave_writer()
 
     def close(self) -> None:
         """Kill the process, and let no other start."""
@@ -78,9 +87,13 @@ class KillablePool:
             process.kill()
             process.join()
 
+    def _open_pipes(self) -> list[ProcessPipe]:
+        log = ProcessPipe(f"log of {self._part}", relay)
+        return [log, ProcessPipe(f"reports of {self._part}", self._on_report)] if self._on_report else [log]
+
 
 def _init_process(writer: Connection, part: str, initializer: Callable[..., object], initargs: tuple[Any, ...]) -> None:
-    write_to_service(writer, part)
+    log_to_service(writer, part)
     initializer(*initargs)
 
 

@@ -6,6 +6,7 @@ The service only names these functions. What they call is loaded in this process
 
 from __future__ import annotations
 
+import ctypes
 import logging
 import os
 import resource
@@ -17,12 +18,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import parent_process
-from multiprocessing.synchronize import Event
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
 from teachpath.errors import Cancelled, TeachpathError
-from teachpath.jobs.executors import Reports, Work
+from teachpath.jobs.executors import Work
+from teachpath.jobs.process_pipe import send
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.planning.signature import CalibrationScope, SigningKey, sign_plan
@@ -37,15 +39,15 @@ Progress = Callable[[float, str], None]
 PROGRESS_INTERVAL = 0.25
 NICENESS = 10  # of the process, so that the control loop and the service go first
 
-_progress: Reports | None = None
-_cancel: Event | None = None
+_reports: Connection | None = None
+_cancel: ctypes.c_bool | None = None
 _memory_limit = 0  # bytes beside what the process has taken before its first job; 0: none, or set already
 
 
-def init_worker(progress: Reports, cancel: Event, memory_limit: int) -> None:
-    """Prepare this process: it reports to `progress`, is cancelled by `cancel`, and ends with its parent."""
-    global _progress, _cancel
-    _progress, _cancel = progress, cancel
+def init_worker(reports: Connection, cancel: ctypes.c_bool, memory_limit: int) -> None:
+    """Prepare this process: it reports to `reports`, is cancelled by `cancel`, and ends with its parent."""
+    global _reports, _cancel
+    _reports, _cancel = reports, cancel
     init_limited(memory_limit)
 
 
@@ -101,11 +103,11 @@ def work(key: str, work: Work, inputs: tuple[Any, ...]) -> Any:
     def progress(fraction: float, sentence: str) -> None:
         """Report changes of the sentence, and else at intervals; raises Cancelled."""
         nonlocal reported, due
-        if _cancel is not None and _cancel.is_set():
+        if _cancel is not None and _cancel.value:
             raise Cancelled("cancelled by the operator")
         now = time.monotonic()
-        if _progress is not None and (sentence != reported or now >= due or fraction >= 1.0):
-            _progress.put((key, fraction, sentence))
+        if _reports is not None and (sentence != reported or now >= due or fraction >= 1.0):
+            send(_reports, (key, fraction, sentence))
             reported, due = sentence, now + PROGRESS_INTERVAL
 
     begun = time.monotonic()

@@ -11,7 +11,6 @@ from teachpath.jobs import worker
 from teachpath.jobs.executors import Limits, Work
 from teachpath.jobs.job_lane import JobLane, Orders
 from teachpath.jobs.local_executor import LocalExecutor
-from teachpath.process_server import CONTEXT
 from tests.waiting import HANG
 
 
@@ -38,13 +37,10 @@ def lane(done: queue.SimpleQueue[object], orders: Orders) -> Iterator[JobLane]:
         except Cancelled as error:
             done.put((key, error))
 
-    reports = CONTEXT.Queue()
-    lane = JobLane("test", LocalExecutor(Limits(0, HANG), reports), process, orders)
+    lane = JobLane("test", LocalExecutor(Limits(0, HANG), queue.SimpleQueue()), process, orders)
     yield lane
     lane.request_stop()
     lane.join()
-    reports.close()
-    reports.cancel_join_thread()
 
 
 def test_jobs_are_done_in_their_order_in_one_process(

@@ -1,12 +1,16 @@
 import logging
 import os
+import queue
 import signal
+import struct
 import time
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import active_children
+from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -34,6 +38,25 @@ def die() -> None:
 
 def tell(what: str) -> None:
     logging.getLogger("teachpath.work").info(what)
+
+
+class Reports:
+    """Where a process of a pool reports to."""
+
+    writer: Connection
+
+    @classmethod
+    def begin(cls, writer: Connection) -> None:
+        cls.writer = writer
+
+    @classmethod
+    def report(cls, what: Any) -> None:
+        cls.writer.send(what)
+
+    @classmethod
+    def die_in_a_report(cls) -> None:
+        os.write(cls.writer.fileno(), struct.pack("!i", 100) + b"half of it")
+        die()
 
 
 @pytest.fixture
@@ -109,6 +132,21 @@ def test_what_a_process_logs_stands_in_the_log_of_the_service_under_its_request(
     pool.kill()  # what was written is passed on all the same
     wait_until(lambda: len(said(caplog)) == 2, "both lines are there")
     assert said(caplog) == [("worker", "one", "begun"), ("worker", "two", "goes on")]
+
+
+def test_what_a_process_reports_comes_in_its_order_also_after_one_was_killed_in_the_middle_of_a_report() -> None:
+    heard = queue.Queue[Any]()
+    pool = KillablePool(Reports.begin, on_report=heard.put)
+    try:
+        for number in range(3):
+            pool.submit(Reports.report, ("one", number))
+        with pytest.raises(BrokenProcessPool):
+            pool.submit(Reports.die_in_a_report).result(HANG)
+        pool.kill()
+        pool.submit(Reports.report, ("two", 0))
+        assert [heard.get(timeout=HANG) for _ in range(4)] == [("one", 0), ("one", 1), ("one", 2), ("two", 0)]
+    finally:
+        pool.close()
 
 
 def said(caplog: pytest.LogCaptureFixture) -> list[tuple[str, str, str]]:
