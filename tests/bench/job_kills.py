@@ -7,19 +7,24 @@ import random
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections import Counter
 from contextlib import ExitStack
 from pathlib import Path
 
 from teachpath.io.store.pages import PageRequest
+from teachpath.io.store.services import DEAD_AFTER
+from teachpath.io.store.store import Store
 from tests.contract.job_program import job_service
 from tests.contract.rows import a_job
 from tests.postgres import serving
+from tests.waiting import HANG
 
 TASK = "lift"
 REPORTS = 15  # of each job, 20 ms apart
 PAUSE = 0.5, 3.0  # [s] between two kills, at least and at most
+STUCK = 2 * DEAD_AFTER + HANG  # [s] without any job that ends
 
 
 class Program:
@@ -31,20 +36,45 @@ class Program:
 
     def _start(self) -> None:
         self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
+        self._started = threading.Event()
+        self._reader = threading.Thread(target=self._read, args=(self._process, self._started), daemon=True)
+        self._reader.start()
 
-    def wait_for_start(self) -> None:
-        assert self._process.stdout is not None
-        self._process.stdout.readline()
+    def _read(self, process: subprocess.Popen[str], started: threading.Event) -> None:
+        assert process.stdout is not None
+        with process.stdout:
+            if process.stdout.readline():
+                started.set()
+
+    @property
+    def has_started(self) -> bool:
+        """Whether it has said that it works."""
+        assert self._process.poll() is None, "a service has ended by itself"
+        return self._started.is_set()
 
     def kill(self) -> None:
         self._process.kill()
         self._process.wait()
-        assert self._process.stdout is not None
-        self._process.stdout.close()
+        self._reader.join()
 
     def kill_and_restart(self) -> None:
         self.kill()
         self._start()
+
+
+def kill_until_done(store: Store, programs: list[Program], chance: random.Random) -> int:
+    """Kill services that have said that they work, until all jobs have ended; return how often."""
+    kills, left, since = 0, len(store.jobs(unfinished=True)), time.monotonic()
+    while unfinished := store.jobs(unfinished=True):
+        if len(unfinished) < left:
+            left, since = len(unfinished), time.monotonic()
+        elif time.monotonic() - since > STUCK:
+            sys.exit(f"no job has ended for {STUCK:g} s: {unfinished}")
+        time.sleep(chance.uniform(*PAUSE))
+        if started := [program for program in programs if program.has_started]:
+            chance.choice(started).kill_and_restart()
+            kills += 1
+    return kills
 
 
 def main() -> None:
@@ -54,7 +84,7 @@ def main() -> None:
     parser.add_argument("--services", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
     wanted = parser.parse_args()
-    chance, kills, began = random.Random(wanted.seed), 0, time.monotonic()
+    began = time.monotonic()
     with serving() as server, tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         url = server.new_url()
         store, jobs = job_service(url, str(Path(folder) / "asked"))  # which does none of them
@@ -64,14 +94,10 @@ def main() -> None:
         programs = [Program(url, Path(folder) / str(number)) for number in range(wanted.services)]
         for program in programs:
             stack.callback(program.kill)
-            program.wait_for_start()
         begun = [a_job(f"learn-{n}", task=TASK, request={"reports": REPORTS}) for n in range(wanted.jobs)]
         for job in begun:
             store.add_job(job)
-        while store.jobs(unfinished=True):
-            time.sleep(chance.uniform(*PAUSE))
-            chance.choice(programs).kill_and_restart()
-            kills += 1
+        kills = kill_until_done(store, programs, random.Random(wanted.seed))
         ended = [store.job(job.id) for job in begun]
         runs = sorted(run.id for run in store.lists.runs(TASK, PageRequest(limit=500)).entries)
     states = Counter(job.state.value for job in ended)
