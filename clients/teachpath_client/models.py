@@ -388,6 +388,7 @@ class Demonstration:
         digest: of its recording; None: it was stored before digests were.
         object_pose: of the object before it was grasped; None: as the scene has it.
         source_sha256: of the file that it was imported from, hexadecimal; empty: it was not imported.
+        station: that it was made at; empty where a station has no name.
     """
 
     id: str
@@ -413,6 +414,7 @@ class Demonstration:
     digest: RecordingDigest | None = None
     object_pose: ObjectPose | None = None
     source_sha256: str = ""
+    station: str = ""
 
 
 @dataclass(frozen=True)
@@ -494,12 +496,14 @@ class Execution:
         plan: id of the plan; None: the arm followed a live hand.
         created_ns: when it was ordered [ns since the Unix epoch].
         status: the newest of the executor.
+        station: whose arm moved; empty where it has no name.
     """
 
     id: str
     plan: str | None
     created_ns: int
     status: ExecutorStatus
+    station: str = ""
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ import { panel as scene } from "./panels/scene.js";
 import { panel as ways } from "./panels/ways.js";
 import { enablePathPicking } from "./path_picking.js";
 import { SceneLayers } from "./scene_layers.js";
+import { stationMenu } from "./stations.js";
 import { doneSteps } from "./steps.js";
 import { activeExecution, Store } from "./store.js";
 import { Tabs } from "./tabs.js";
@@ -134,6 +135,7 @@ eventLog(byId("events"), byId("events-button"), store);
 const taskSelect = /** @type {HTMLSelectElement} */ (byId("task"));
 const stop = /** @type {HTMLButtonElement} */ (byId("stop"));
 header(context, { task: taskSelect, control: byId("control"), arm: byId("arm-state") });
+stationMenu(store, /** @type {HTMLSelectElement} */ (byId("station")));
 stopButton(context, armStop, { stop, warning: byId("not-stopped") });
 const identity = new IdentityControl(context, { who: byId("identity"), signIn: byId("sign-in") });
 let mayMove = false; // also while an executor is silent that moved the arm

@@ -5,7 +5,8 @@
 // runs         [summary of a run] of the task, newest first   jobs           [job] of the task, newest first
 // executions   [execution], newest first                      recordings     [report] of running recordings
 // trackers     [{name, announced}]                            guidance       {task: sentence}
-// station      {version, notes, authority, documents} or null executor       status or null when it is silent
+// station      {name, version, notes, ...} or null            executor       status or null when it is silent
+// shownStation whose entries are shown, "" = all, null = this one (stations.js)
 // run          id of the chosen run, "" = the newest          selectedRun    the run that is shown, null = none
 // plan         certified plan of the selected path, or null    identity       who uses the page, and may do what
 // path         id of the selected learned path                focus          {kind, id} under the pointer, or null;
@@ -36,6 +37,7 @@ export const INITIAL_STATE = Object.freeze({
   trackers: [],
   guidance: {},
   station: null,
+  shownStation: null,
   executor: null,
   lease: null,
   identity: ANYBODY,

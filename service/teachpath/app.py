@@ -258,12 +258,13 @@ class Station:
 
     def _polls(self) -> dict[str, Poll]:
         """Return by topic how to read the states that no row of the store holds."""
-        statuses, trackers = self.recorder.statuses, self.recorder.trackers
+        statuses, trackers, notes = self.recorder.statuses, self.recorder.trackers, self.notes
+        name = self.store.services.station
         return {
             "recordings": lambda: {s.tracker: recording_document(s) for s in statuses(with_statistics=True)},
             "trackers": lambda: {t.name: {"announced": t.announced, "silent": t.is_silent} for t in trackers()},
             "guidance": lambda: {task: {"sentence": said} for task, said in self.guidance.all_advice().items()},
-            "station": lambda: {"": asdict(StationState(__version__, self.notes(), self._authority, has_documents()))},
+            "station": lambda: {"": asdict(StationState(__version__, notes(), self._authority, has_documents(), name))},
             "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},
         }
 

@@ -139,7 +139,11 @@ def test_stations_have_jobs_executions_and_recordings_of_their_own(open_: Open) 
     assert [execution.id for execution in two.unfinished_executions()] == ["e1"]
     assert two.checks.named_recordings() == {"t/d1.mcap"}
     assert [job.station for job in one.lists.jobs("t").entries] == ["two", "one"]  # and everybody sees them all
-    assert [each.number for each in two.demonstrations("t")] == [1, 2]
+    for store in (one, two):
+        assert [(each.number, each.station) for each in store.demonstrations("t")] == [(1, "one"), (2, "two")]
+        assert [each.station for each in store.lists.demonstrations("t").entries] == ["one", "two"]
+        assert {each.id: each.station for each in store.lists.executions().entries} == {"e0": "one", "e1": "two"}
+    assert one.change_demonstration("d1", mark="good").station == "two"
     with pytest.raises(UnusableInput, match=r"recordings other stations keep \(1 at one\)"):
         two.services.require_recorded_here("t")
 
@@ -172,10 +176,13 @@ def test_rows_of_a_station_without_a_name_are_its_own_when_it_gets_one(kind: str
     database = url if kind == "postgresql" else ""
     nameless = Store(StoreSettings(str(tmp_path), database))
     nameless.add_job(a_job())
+    nameless.ensure_task("t", scene="paper", calibration="identity")
+    assert nameless.add_demonstration(demonstration("d")).station == ""
     nameless.close()
     named = Store(StoreSettings(str(tmp_path), database, "cell"))
     named.services.begin()
     assert [job.id for job in named.claims.waiting(["learn"])] == ["learn-1"]
+    assert named.demonstration("d").station == "cell"
     named.close()
 
 

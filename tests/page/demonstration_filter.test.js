@@ -8,6 +8,7 @@ const all = Array.from({ length: 60 }, (_, i) => ({
   id: `d${i + 1}`,
   number: i + 1,
   source: i % 2 ? "glove" : "page",
+  station: i % 4 ? "" : "cell-2",
   verdict: VERDICTS[i % 3],
   mark: i % 5 ? "" : "good",
   reasons: i % 3 ? [`${i} samples were lost`] : [],
@@ -61,6 +62,10 @@ test("a number finds its demonstration, words find what all of them are in", () 
   assert.deepEqual(
     find({ search: "GLOVE lost" }).reverse(),
     all.filter((d) => d.source === "glove" && d.reasons.length),
+  );
+  assert.deepEqual(
+    find({ search: "cell-2" }).reverse(),
+    all.filter((d) => d.station),
   );
   assert.deepEqual(find({ search: "moon" }), []);
 });

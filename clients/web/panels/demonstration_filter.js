@@ -40,7 +40,7 @@ export function groupsWithWays(ways) {
 
 /**
  * The demonstrations that a filter finds, in its order. A number finds the demonstration of that number; other words are
- * looked for in source, verdict, mark and reasons.
+ * looked for in source, station, verdict, mark and reasons.
  * @param {Demonstration[]} demonstrations in the order of their numbers
  * @param {Map<string, number>} ways
  * @param {Filter} filter
@@ -63,9 +63,9 @@ function isOfGroup({ verdict, mark, discarded_ns }, way, group) {
 }
 
 /** @param {Demonstration} demonstration @param {string} word */
-function has({ number, source, verdict, mark, reasons, advice }, word) {
+function has({ number, source, station, verdict, mark, reasons, advice }, word) {
   if (/^\d+$/.test(word)) return number === Number(word);
-  return [source, verdict, mark, advice, ...reasons].some((text) => text.toLowerCase().includes(word));
+  return [source, station, verdict, mark, advice, ...reasons].some((text) => text.toLowerCase().includes(word));
 }
 
 /**

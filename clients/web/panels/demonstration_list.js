@@ -2,6 +2,7 @@
 import { patch, post, resourcePath } from "../api.js";
 import { blocked, closestData, codeBlock, definitionList, element, hint, option } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
+import { ofShownStation, StationWatch, stationLabels } from "../stations.js";
 import { changesAny, waysOfDemonstrations } from "../store.js";
 import { capitalize, formatNumber, pluralize } from "../texts.js";
 import { filterDemonstrations, groupsWithWays, NO_FILTER, ORDERS } from "./demonstration_filter.js";
@@ -18,6 +19,7 @@ const ABOUT_MARKS = `${MARK_SYMBOLS[""]} marks one good, then bad: the bad ones 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
 export function demonstrationList(place, { store, sceneLayers, attempt, readOnly }) {
   let [filter, page] = [NO_FILTER, 0];
+  const watch = new StationWatch();
   const selection = new DemonstrationSelection(() => render(store.state));
   const tools = filterTools((chosen) => {
     [filter, page] = [chosen, 0];
@@ -51,7 +53,8 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
   });
 
   /** @param {State} state */
-  const filtered = (state) => filterDemonstrations(state.demonstrations ?? [], waysOfDemonstrations(state), filter);
+  const filtered = (state) =>
+    filterDemonstrations(ofShownStation(state, state.demonstrations), waysOfDemonstrations(state), filter);
 
   /** @param {State} state */
   function render(state) {
@@ -82,7 +85,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
         selection.turn(false);
       }
       const isNew = changesAny(changed, "demonstrations", "guidance", "task", "tasks", "runs", "selectedRun");
-      if (isNew || changed.has("trajectoriesLoaded")) render(state);
+      if (watch.hasChanged(state, changed) || isNew || changed.has("trajectoriesLoaded")) render(state);
       markFocus(place, state.focus); // also on what has just been drawn anew
     },
   };
@@ -146,11 +149,11 @@ function summary({ task, tasks, demonstrations, guidance }) {
  */
 function list(state, shown, trajectories, readOnly, chosen) {
   if (!shown.length) return hint("No demonstration is like that: search for less, or show all.");
-  const draw = thumbnailMaker(state, shown, trajectories);
+  const [draw, stationOf] = [thumbnailMaker(state, shown, trajectories), stationLabels(state)];
   return element(
     "ol",
     { class: "demonstration-list", "aria-label": "demonstrations" },
-    shown.map((d) => demonstrationRow(d, draw(d.id), readOnly, chosen)),
+    shown.map((d) => demonstrationRow(d, draw(d.id), readOnly, chosen, stationOf(d))),
   );
 }
 

@@ -33,8 +33,9 @@ export function thumbnailMaker(state, demonstrations, trajectories) {
  * @param {Child} preview
  * @param {boolean} readOnly
  * @param {Set<string> | null} [chosen] ids of those that are selected; null: nothing is selected here
+ * @param {string} [station] that it was made at, where there are several
  */
-export function demonstrationRow(demonstration, preview, readOnly, chosen = null) {
+export function demonstrationRow(demonstration, preview, readOnly, chosen = null, station = "") {
   const { id, number, verdict, mark, trim, duration, discarded_ns, statistics } = demonstration;
   const word = discarded_ns ? "discarded" : verdict;
   return element(
@@ -46,7 +47,7 @@ export function demonstrationRow(demonstration, preview, readOnly, chosen = null
     element("span", { class: "figure" }, statistics.lost > 0 && `${statistics.lost} lost`),
     element("span", { class: "figure" }, formatNumber(duration, 1, "s")),
     !readOnly && rowButtons(demonstration),
-    verdictExplanation(demonstration, mark && `marked ${mark}`, trim ? "trimmed" : ""),
+    verdictExplanation(demonstration, mark && `marked ${mark}`, trim ? "trimmed" : "", station && `at ${station}`),
   );
 }
 

@@ -6,6 +6,7 @@ import { Motion } from "../arm/motion.js";
 import { MotionPlayer } from "../arm/motion_player.js";
 import { closestData, element } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
+import { ofShownStation, StationWatch, stationLabels } from "../stations.js";
 import { capitalize, formatNumber } from "../texts.js";
 import { PlanNames } from "./plan_names.js";
 
@@ -30,6 +31,7 @@ class ExecutionReplay {
   /** @type {JointPlots | null} */
   #plots = null;
   #names = new PlanNames();
+  #watch = new StationWatch();
 
   /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
@@ -55,15 +57,15 @@ class ExecutionReplay {
 
   /** @param {State} state @param {Changed} changed */
   update(state, changed) {
-    if (!changed.has("executions")) return;
-    this.#render(state.executions);
+    if (!this.#watch.hasChanged(state, changed) && !changed.has("executions")) return;
+    this.#render(state);
     this.#readNames(state.executions ?? []);
   }
 
   /** @param {Execution[]} executions */
   async #readNames(executions) {
     const plans = executions.slice(0, MAX_LISTED).flatMap(({ plan }) => (plan ? [plan] : []));
-    if (await this.#names.read(plans)) this.#render(this.context.store.state.executions);
+    if (await this.#names.read(plans)) this.#render(this.context.store.state);
   }
 
   hide() {
@@ -74,7 +76,7 @@ class ExecutionReplay {
   /** @param {string} execution */
   #select(execution) {
     this.#execution = execution;
-    this.#render(this.context.store.state.executions);
+    this.#render(this.context.store.state);
   }
 
   /** @param {string} execution */
@@ -109,10 +111,13 @@ class ExecutionReplay {
     return plan ? get(resourcePath("plans", plan)).catch(() => null) : null;
   }
 
-  /** @param {Execution[] | null} executions */
-  #render(executions) {
-    const newest = (executions ?? []).slice(0, MAX_LISTED);
-    const rows = newest.map((one) => executionRow(one, this.#names.of(one.plan), one.id === this.#execution));
+  /** @param {State} state */
+  #render(state) {
+    const newest = ofShownStation(state, state.executions).slice(0, MAX_LISTED);
+    const stationOf = stationLabels(state);
+    const rows = newest.map((one) =>
+      executionRow(one, this.#names.of(one.plan), one.id === this.#execution, stationOf(one)),
+    );
     patchChildren(this.list, rows.length ? rows : element("li", { class: "hint" }, NOTHING));
   }
 }
@@ -141,8 +146,13 @@ function plotRows({ times, positions, velocities, tracking_error, lateness }, ar
   );
 }
 
-/** @param {Execution} execution @param {string} name of what was executed @param {boolean} open */
-function executionRow({ id, plan, created_ns, status }, name, open) {
+/**
+ * @param {Execution} execution
+ * @param {string} name of what was executed
+ * @param {boolean} open
+ * @param {string} station whose arm moved, where there are several
+ */
+function executionRow({ id, plan, created_ns, status }, name, open, station) {
   const digits = /** @type {const} */ ({ hour: "2-digit", minute: "2-digit", second: "2-digit" });
   const when = new Date(created_ns / 1e6).toLocaleTimeString([], { ...digits, hour12: false });
   const time = status.duration > 0 ? ` after ${formatNumber(status.duration, 1, "s")}` : "";
@@ -156,7 +166,7 @@ function executionRow({ id, plan, created_ns, status }, name, open) {
       "span",
       { class: "why" },
       plan ? name && `${capitalize(name)}. ` : "A live hand. ",
-      `${capitalize(status.state)}${time}${reason}`,
+      `${capitalize(status.state)}${station && ` at ${station}`}${time}${reason}`,
     ),
     element("button", { type: "button", "data-execution": id, "data-key": id, ...label }, "Replay"),
   );

@@ -2,6 +2,7 @@
 import { post, resourcePath } from "../api.js";
 import { closestData, element, hideSection, progressBar } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
+import { ofShownStation, StationWatch, stationLabels } from "../stations.js";
 import { capitalize } from "../texts.js";
 
 /** @type {Record<string, string>} */
@@ -13,21 +14,29 @@ export function jobList(place, { attempt }) {
     const { cancel } = closestData(event);
     if (cancel) attempt(() => post(resourcePath("jobs", cancel, "cancel")));
   });
+  const watch = new StationWatch();
   return {
     update(state, changed) {
-      if (!changed.has("jobs")) return;
-      const jobs = state.jobs ?? [];
+      if (!watch.hasChanged(state, changed) && !changed.has("jobs")) return;
+      const jobs = ofShownStation(state, state.jobs);
       const running = jobs.filter((job) => job.state === "running" || job.state === "queued");
       const failed = jobs.slice(0, 1).filter((job) => job.state === "failed" && job.kind !== "plan"); // a path's card says why it has no plan
+      const stationOf = stationLabels(state);
       hideSection(place, !running.length && !failed.length);
-      patchChildren(place, running.map(jobRow), failed.map(failedRow));
+      patchChildren(
+        place,
+        running.map((job) => jobRow(job, nameOf(job, stationOf(job)))),
+        failed.map((job) => failedRow(job, nameOf(job, stationOf(job)))),
+      );
     },
   };
 }
 
-/** @param {Job} job */
-function jobRow({ id, kind, message, state, fraction }) {
-  const name = JOB_LABELS[kind] ?? capitalize(kind);
+/** @param {Job} job @param {string} station at which it was ordered, where there are several */
+const nameOf = ({ kind }, station) => `${JOB_LABELS[kind] ?? capitalize(kind)}${station && ` at ${station}`}`;
+
+/** @param {Job} job @param {string} name */
+function jobRow({ id, message, state, fraction }, name) {
   return element(
     "div",
     { class: "job", "data-key": id },
@@ -37,7 +46,7 @@ function jobRow({ id, kind, message, state, fraction }) {
   );
 }
 
-/** @param {Job} job */
-function failedRow({ kind, message }) {
-  return element("p", { class: "job failed" }, `${JOB_LABELS[kind] ?? capitalize(kind)} failed: ${message}`);
+/** @param {Job} job @param {string} name */
+function failedRow({ message }, name) {
+  return element("p", { class: "job failed" }, `${name} failed: ${message}`);
 }

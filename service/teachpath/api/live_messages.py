@@ -69,12 +69,14 @@ class StationState:
         notes: what needs somebody, in words.
         authority: whether devices can get the certificate of the station's own authority, at /authority.
         documents: whether the documents were built here, and are at /help.
+        name: of this station among those on its store; empty where it has none.
     """
 
     version: str
     notes: list[str]
     authority: bool
     documents: bool
+    name: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -246,6 +246,7 @@ class Demonstration:
         digest: of its recording; None: it was stored before digests were.
         object_pose: of the object before it was grasped; None: as the scene has it.
         source_sha256: of the file that it was imported from, hexadecimal; empty: it was not imported.
+        station: that it was made at; empty where a station has no name.
     """
 
     id: str
@@ -271,6 +272,7 @@ class Demonstration:
     digest: RecordingDigest | None = None
     object_pose: ObjectPose | None = None
     source_sha256: str = ""
+    station: str = ""
 
     @property
     def transport(self) -> tuple[int, int]:

@@ -8,8 +8,8 @@ from sqlalchemy import Engine, select
 from sqlalchemy.orm import Session
 
 from teachpath.errors import UnusableInput
-from teachpath.io.documents import from_document
 from teachpath.io.store.object_storage import SCHEME
+from teachpath.io.store.rows import demonstration_of
 from teachpath.io.store.tables import DemonstrationRow
 from teachpath.records import Demonstration
 
@@ -49,9 +49,10 @@ class Checks:
         """Yield the station's demonstrations by their ids, by task and number; why, where a row says nothing."""
         question = select(DemonstrationRow).where(self._own).order_by(DemonstrationRow.task, DemonstrationRow.number)
         with Session(self._engine) as session:
-            rows = [(row.id, row.document) for row in session.scalars(question)]
-        for key, document in rows:
+            rows = list(session.scalars(question))
+            session.expunge_all()
+        for row in rows:
             try:
-                yield key, from_document(Demonstration, document)
+                yield row.id, demonstration_of(row)
             except UnusableInput as error:
-                yield key, str(error)
+                yield row.id, str(error)

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Bundle, Session, aliased, defer
 from teachpath.errors import NotFound
 from teachpath.io.documents import from_document
 from teachpath.io.store.pages import Listing, Page, PageRequest
-from teachpath.io.store.rows import job_of, task_of
+from teachpath.io.store.rows import demonstration_of, job_of, task_of
 from teachpath.io.store.tables import (
     DemonstrationRow,
     ExecutionTable,
@@ -61,12 +61,14 @@ class Execution:
         plan: id of the plan; None: the arm followed a live hand.
         created_ns: when it was ordered [ns since the Unix epoch].
         status: the newest of the executor.
+        station: whose arm moved; empty where it has no name.
     """
 
     id: str
     plan: str | None
     created_ns: int
     status: ExecutorStatus
+    station: str = ""
 
 
 class Lists:
@@ -83,7 +85,7 @@ class Lists:
     def demonstrations(self, task: str, wanted: PageRequest = FIRST_PAGE) -> Page[Demonstration]:
         """List the demonstrations of a task in their order."""
         question = select(DemonstrationRow).where(DemonstrationRow.task == task)
-        return self._read(DEMONSTRATIONS, question, wanted, lambda row: from_document(Demonstration, row.document))
+        return self._read(DEMONSTRATIONS, question, wanted, demonstration_of)
 
     def runs(self, task: str | None, wanted: PageRequest = FIRST_PAGE) -> Page[RunSummary]:
         """List the learning runs of a task, or of all that are not archived, newest first, without what was learned."""
@@ -166,7 +168,7 @@ class Lists:
 
 def execution_of(row: ExecutionTable) -> Execution:
     """Return the execution of a row."""
-    return Execution(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document))
+    return Execution(row.id, row.plan, row.created_ns, from_document(ExecutorStatus, row.document), row.station)
 
 
 def _of_open_task(question: Select[Any], task: str | None) -> Select[Any]:

@@ -21,7 +21,9 @@ from teachpath.records import Demonstration
 
 def facts_of(demonstration: Demonstration) -> dict[str, str]:
     """Return what the recording of a demonstration says of itself."""
-    stated = replace(demonstration, number=0, recording="", digest=None)  # they follow from where it is stored
+    stated = replace(
+        demonstration, number=0, recording="", digest=None, station=""
+    )  # which follow from where it is stored
     account = documents.encode(stated.statistics).decode()
     return {"verdict": stated.verdict, "statistics": account, "demonstration": documents.encode(stated).decode()}
 

@@ -61,7 +61,7 @@ def numbered_row(session: Session, demonstration: Demonstration, station: str) -
     newest = session.scalar(
         select(func.max(DemonstrationRow.number)).where(DemonstrationRow.task == demonstration.task)
     )
-    numbered = replace(demonstration, number=(newest or 0) + 1)
+    numbered = replace(demonstration, number=(newest or 0) + 1, station=station)
     session.add(
         DemonstrationRow(
             id=numbered.id,
@@ -69,11 +69,22 @@ def numbered_row(session: Session, demonstration: Demonstration, station: str) -
             number=numbered.number,
             created_ns=numbered.created_ns,
             verdict=numbered.verdict.value,
-            document=to_document(numbered),
+            document=demonstration_document(numbered),
             station=station,
         )
     )
     return numbered
+
+
+def demonstration_of(row: DemonstrationRow) -> Demonstration:
+    """Return the demonstration of a row; raises UnusableInput."""
+    return replace(from_document(Demonstration, row.document), station=row.station)
+
+
+def demonstration_document(demonstration: Demonstration) -> dict[str, Any]:
+    """Return what the row of a demonstration says of it; a station that gets a name is in the row alone."""
+    document: dict[str, Any] = to_document(replace(demonstration, station=""))
+    return document
 
 
 def imported_rows(
@@ -92,7 +103,7 @@ def imported_rows(
             added.append(demonstration.recording)
             stored.append(numbered_row(session, demonstration, station))
         else:
-            stored.append(from_document(Demonstration, row.document))
+            stored.append(demonstration_of(row))
         session.flush()
     return stored
 

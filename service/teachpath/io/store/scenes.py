@@ -13,8 +13,9 @@ from teachpath.errors import Conflict, NotFound, UnusableInput
 from teachpath.io.documents import from_document, to_document
 from teachpath.io.store.changes import Changed, changing, unheard
 from teachpath.io.store.engine import lock_name
+from teachpath.io.store.rows import demonstration_document, demonstration_of
 from teachpath.io.store.tables import DemonstrationRow, SceneRow, TaskRow
-from teachpath.records import Demonstration, ObjectPose, SavedScene, Scene, SceneVersion
+from teachpath.records import ObjectPose, SavedScene, Scene, SceneVersion
 
 MAX_VERSIONS: Final = 10_000  # of one scene
 MAX_SHOWN_TASKS: Final = 5
@@ -146,7 +147,7 @@ def _keep_places(session: Session, before: Scene, after: Scene) -> None:
         return
     of_scene = select(DemonstrationRow).join(TaskRow).where(TaskRow.scene == before.name)
     for row in session.scalars(of_scene):
-        stored = from_document(Demonstration, row.document)
+        stored = demonstration_of(row)
         if stored.object_pose is not None:
             continue
         if was is None:
@@ -154,7 +155,7 @@ def _keep_places(session: Session, before: Scene, after: Scene) -> None:
                 f"scene {before.name} had no object when demonstration {stored.number} of task {stored.task} was made, "
                 "so it gets none now; copy it under another name, and make tasks with that one"
             )
-        row.document = to_document(replace(stored, object_pose=was))
+        row.document = demonstration_document(replace(stored, object_pose=was))
 
 
 def _place(scene: Scene) -> ObjectPose | None:

@@ -29,7 +29,18 @@ from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
 from teachpath.io.store.people import People
 from teachpath.io.store.recordings import RECORDINGS, Opener, Recordings, open_new
-from teachpath.io.store.rows import Run, ensured_task, imported_rows, job_of, numbered_row, run_of, success, task_of
+from teachpath.io.store.rows import (
+    Run,
+    demonstration_document,
+    demonstration_of,
+    ensured_task,
+    imported_rows,
+    job_of,
+    numbered_row,
+    run_of,
+    success,
+    task_of,
+)
 from teachpath.io.store.scenes import StoredScenes
 from teachpath.io.store.services import Services
 from teachpath.io.store.settings import StoreSettings
@@ -125,11 +136,11 @@ class Store:
     def demonstrations(self, task: str) -> list[Demonstration]:
         """List the demonstrations of a task in their order."""
         question = select(DemonstrationRow).where(DemonstrationRow.task == task).order_by(DemonstrationRow.number)
-        return [from_document(Demonstration, row.document) for row in self._all(question)]
+        return [demonstration_of(row) for row in self._all(question)]
 
     def demonstration(self, key: str) -> Demonstration:
         """Return one demonstration; raises NotFound."""
-        return from_document(Demonstration, self._one(DemonstrationRow, key, "demonstration").document)
+        return demonstration_of(self._one(DemonstrationRow, key, "demonstration"))
 
     def change_demonstration(self, key: str, **changes: Any) -> Demonstration:
         """Change fields of a demonstration and return it; raises NotFound."""
@@ -137,8 +148,8 @@ class Store:
             row = session.get(DemonstrationRow, key, with_for_update=True)
             if row is None:
                 raise NotFound(f"there is no demonstration {key!r}")
-            changed = replace(from_document(Demonstration, row.document), **changes)
-            row.document, row.verdict = to_document(changed), changed.verdict.value
+            changed = replace(demonstration_of(row), **changes)
+            row.document, row.verdict = demonstration_document(changed), changed.verdict.value
         return changed
 
     # runs, paths and plans
