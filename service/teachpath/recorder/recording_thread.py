@@ -113,11 +113,12 @@ class RecordingThread:
             return bool(self.sessions) or any(queue.is_running for queue in list(self._take_queues))
 
     def wait_for_takes(self) -> None:
-        """Wait until the takes that have ended are stored, or their rows wait for the database."""
+        """Wait until the takes that have ended are stored; the rows of some may still wait for the database."""
         with self.condition:
             sessions = list(self.sessions.values())
         for session in sessions:
             session.completer.wait()
+        self._rows.store_waiting()
 
     @contextmanager
     def kept_idle(self, task: str) -> Iterator[None]:

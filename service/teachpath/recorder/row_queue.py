@@ -92,9 +92,9 @@ class RowQueue:
                     self._store.health.note_lost(f"{reason}; stop the service and run: teachpath doctor")
                 with suppress(OSError):  # the next start finds its row stored
                     self._kept.forget(row)
-                self._waiting.popleft()
                 if stored is not None:
                     waiting.on_stored(stored)
+                self._waiting.popleft()  # last: a new row of the same recording comes behind it
 
     def discard_newest(self, tracker: str) -> bool:
         """Discard the newest take of a tracker whose row waits; return whether there was one."""

@@ -105,7 +105,6 @@ def test_the_next_service_stores_what_still_waits_once(settings: StoreSettings, 
     show(bench, 2)
     bench.recorder.stop()
     kept = store.recordings.kept_rows.read()
-    store.recordings.kept_rows.keep(kept[0])
     note_unnamed(store)
     assert store.health.faults() == []  # no doctor is needed
     other = Store(settings)
