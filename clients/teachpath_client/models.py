@@ -1106,6 +1106,8 @@ class Plan:
         duration: of the path at full speed [s].
         certificate: the proof that the arm can follow it.
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
+        posture: how near it keeps to the joints that were shown; None: no arm showed it, or they were not to
+            count.
     """
 
     id: str
@@ -1121,6 +1123,7 @@ class Plan:
     duration: float
     certificate: Certificate
     tool_speed: float | None
+    posture: Posture | None
 
 
 @dataclass(frozen=True)
@@ -1148,6 +1151,20 @@ class PlanSummary:
     clearance: float
     revoked: bool
     created_ns: int
+
+
+@dataclass(frozen=True)
+class Posture:
+    """How near a plan keeps to the joints that a demonstration showed.
+
+    Attributes:
+        demonstration: its id.
+        distance: of the joint that is farthest from what was shown, at the same share of the way's length
+            [rad].
+    """
+
+    demonstration: str
+    distance: Extreme
 
 
 @dataclass(frozen=True)
@@ -1699,6 +1716,7 @@ class StreamStatistics:
         clock: of the device against the host's; None: not known.
         notes: what an operator should know, in words.
         dwell_times: where a hand without a glove dwells, if taking and putting are not sure [s].
+        joints: how many joints the arm has that showed it; 0: a hand did.
     """
 
     received: int = 0
@@ -1730,6 +1748,7 @@ class StreamStatistics:
     clock: Clock | None = None
     notes: list[str] = field(default_factory=list)
     dwell_times: list[float] = field(default_factory=list)
+    joints: int = 0
 
 
 @dataclass(frozen=True)

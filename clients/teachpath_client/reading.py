@@ -22,6 +22,7 @@ class HandReading:
         tracked: False when the pose is a guess of the device.
         buttons: bit 0 = grasp held.
         device_ns: the device's own stamp [ns since the Unix epoch]; None: `time` counts from when the first one came.
+        joints: of an arm that shows the task, 6 or 7 in the order of the station's arm [rad], or none.
     """
 
     time: float
@@ -31,6 +32,7 @@ class HandReading:
     tracked: bool = True
     buttons: int = 0
     device_ns: int | None = None
+    joints: tuple[float, ...] = ()
 
     def message(self, sequence: int, start_ns: int) -> tracker_pb2.HandSample:
         """Return the sample on the wire; `start_ns` is the device's clock at time 0, where it has no stamps."""
@@ -43,4 +45,5 @@ class HandReading:
             flexions=self.flexions,
             tracked=self.tracked,
             buttons=self.buttons,
+            joints=self.joints,
         )

@@ -42,4 +42,5 @@ def _readings(messages: list[tracker_pb2.HandSample]) -> Iterator[HandReading]:
             flexions=tuple(m.flexions),
             tracked=m.tracked,
             buttons=m.buttons,
+            joints=tuple(m.joints),
         )

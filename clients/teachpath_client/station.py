@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from teachpath_client.control import ControlKeeper
 from teachpath_client.errors import ClientError, ExecutionFaulted, JobFailed, NotInTime
@@ -90,18 +90,26 @@ class Station(TaskResources, WorkResources):
         job = self.begin_job(task, "learn", settings=dict(settings or {}), calibrations=calibrations)
         return self.get_run(task, self.outcome(job, on_change))
 
-    def plan(self, path: str, version: int | None = None, *, on_change: Callable[[Job], object] = _nothing) -> Plan:
+    def plan(
+        self,
+        path: str,
+        version: int | None = None,
+        *,
+        posture: Literal["shown", "free"] = "shown",
+        on_change: Callable[[Job], object] = _nothing,
+    ) -> Plan:
         """Plan a path and return the plan with its certificate.
 
         Args:
             path: id of a learned path.
             version: number of its version; None: the newest on the main branch.
+            posture: `shown` prefers the joints of a demonstration that an arm showed, where there is one.
             on_change: called with the job whenever it has gone on.
 
         Raises:
             JobFailed: the arm cannot follow it; `job.failure` says where, why, and which control point to move.
         """
-        return self.get_plan(self.outcome(self.begin_planning(path, version), on_change))
+        return self.get_plan(self.outcome(self.begin_planning(path, version, posture), on_change))
 
     def run(
         self, plan: str, *, override: float = 1.0, on_change: Callable[[Execution], object] = _nothing

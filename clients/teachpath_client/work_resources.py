@@ -39,9 +39,12 @@ class WorkResources(Rest):
         """Queue a job; `request` is what `POST /tasks/{task}/jobs` takes for its kind."""
         return self._ask(Job, "POST", f"/tasks/{task}/jobs", {"kind": kind} | request)
 
-    def begin_planning(self, path: str, version: int | None = None) -> Job:
+    def begin_planning(
+        self, path: str, version: int | None = None, posture: Literal["shown", "free"] = "shown"
+    ) -> Job:
         """Queue the planning of a path, in its newest version on the main branch or another one."""
-        return self._ask(Job, "POST", f"/paths/{path}/plans", {"version": version})
+        wanted = {"posture": posture} if posture != "shown" else {}  # which stations of before refuse
+        return self._ask(Job, "POST", f"/paths/{path}/plans", {"version": version} | wanted)
 
     def jobs(self, task: str = "", *, limit: int | None = None) -> list[Job]:
         """List a task's jobs, or all, newest first, or the newest `limit` of them."""

@@ -29,7 +29,7 @@ class Quaternion(_message.Message):
     def __init__(self, w: _Optional[float] = ..., x: _Optional[float] = ..., y: _Optional[float] = ..., z: _Optional[float] = ...) -> None: ...
 
 class HandSample(_message.Message):
-    __slots__ = ("sequence", "device_ns", "position", "orientation", "flexions", "tracked", "buttons")
+    __slots__ = ("sequence", "device_ns", "position", "orientation", "flexions", "tracked", "buttons", "joints")
     SEQUENCE_FIELD_NUMBER: _ClassVar[int]
     DEVICE_NS_FIELD_NUMBER: _ClassVar[int]
     POSITION_FIELD_NUMBER: _ClassVar[int]
@@ -37,6 +37,7 @@ class HandSample(_message.Message):
     FLEXIONS_FIELD_NUMBER: _ClassVar[int]
     TRACKED_FIELD_NUMBER: _ClassVar[int]
     BUTTONS_FIELD_NUMBER: _ClassVar[int]
+    JOINTS_FIELD_NUMBER: _ClassVar[int]
     sequence: int
     device_ns: int
     position: Vector3
@@ -44,7 +45,8 @@ class HandSample(_message.Message):
     flexions: _containers.RepeatedScalarFieldContainer[float]
     tracked: bool
     buttons: int
-    def __init__(self, sequence: _Optional[int] = ..., device_ns: _Optional[int] = ..., position: _Optional[_Union[Vector3, _Mapping[str, object]]] = ..., orientation: _Optional[_Union[Quaternion, _Mapping[str, object]]] = ..., flexions: _Optional[_Iterable[float]] = ..., tracked: _Optional[bool] = ..., buttons: _Optional[int] = ...) -> None: ...
+    joints: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, sequence: _Optional[int] = ..., device_ns: _Optional[int] = ..., position: _Optional[_Union[Vector3, _Mapping[str, object]]] = ..., orientation: _Optional[_Union[Quaternion, _Mapping[str, object]]] = ..., flexions: _Optional[_Iterable[float]] = ..., tracked: _Optional[bool] = ..., buttons: _Optional[int] = ..., joints: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class StartRecording(_message.Message):
     __slots__ = ("task", "tracker", "calibration", "scene", "rate", "armed", "countdown", "takes", "one_by_one")

@@ -25,13 +25,14 @@ from teachpath.offline.learning_job import (
     read_to_recut,
     recut_read,
 )
+from teachpath.offline.planning_job import Signer, find_posture, read_to_plan, sign_planned
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Scene, Task
 from teachpath.robot.object_poses import ObjectPoses
 from teachpath.robot.scenes import Scenes
 
-PLANNING = Work(worker.plan_path, worker.without_signer, worker.sign_planned)
+PLANNING = Work(worker.plan_path, read_to_plan, sign_planned)
 
 
 @dataclass(frozen=True)
@@ -134,8 +135,10 @@ class JobKinds:
         path, version = str(job.request["path"]), job.request.get("version")
         learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
         scene = self.objects.scene_for(self.store.task(job.task).scene, learned)
-        signer = worker.Signer(self.signing_key, self._calibrations_of(job.task, learned))
-        return learned, scene, self.settings.motion, self.settings.arm, signer
+        signer = Signer(self.signing_key, self._calibrations_of(job.task, learned))
+        arm, free = self.settings.arm, job.request.get("posture") == "free"
+        posture = None if free else find_posture(self.store, job.task, learned, arm)
+        return learned, scene, self.settings.motion, arm, posture, signer
 
     def _calibrations_of(self, task: str, path: LearnedPath) -> CalibrationScope:
         """Return the calibrations, each once, of the demonstrations that a path was learned from."""

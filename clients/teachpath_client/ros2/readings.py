@@ -26,12 +26,14 @@ class Measured:
         position: [m] in the frame of the message.
         orientation: w, x, y, z; None where the message has none.
         grasps: whether it holds something; None where the message does not say.
+        joints: of the arm that shows it, in the order of the station's arm [rad]; none where no arm does.
     """
 
     stamp_ns: int
     position: Vector
     orientation: Quaternion | None
     grasps: bool | None = None
+    joints: tuple[float, ...] = ()
 
 
 class Interpreter(ABC):
@@ -137,13 +139,14 @@ class JointInterpreter(Interpreter):
         if len(known) < len(wanted):
             raise Malformed(f"it has no joint {', '.join(self._prefix + n for n in self._names if n not in known)}")
         position, turn = tool_pose(self._robot, known)
-        return checked(Measured(stamp_of(message.header), position, turn, self._grasps if self._gripper else None))
+        grasps, joints = self._grasps if self._gripper else None, tuple(known.values())
+        return checked(Measured(stamp_of(message.header), position, turn, grasps, joints))
 
 
 def checked(measured: Measured) -> Measured:
     """Return what was measured, or raise `Malformed` where the station would refuse it."""
     turn = measured.orientation or NOT_MEASURED
-    fault = sample_fault(measured.position, turn, (), measured.stamp_ns or 1)
+    fault = sample_fault(measured.position, turn, (), measured.stamp_ns or 1, measured.joints)
     if fault:
         raise Malformed(fault)
     return measured

@@ -139,7 +139,14 @@ class Ros2Source:
             last = stamp
             grasps = self._grasps if measured.grasps is None else measured.grasps
             buttons = GRASP_BUTTON if grasps else 0
-            yield HandReading(came - start, measured.position, measured.orientation, buttons=buttons, device_ns=stamp)
+            yield HandReading(
+                came - start,
+                measured.position,
+                measured.orientation,
+                buttons=buttons,
+                device_ns=stamp,
+                joints=measured.joints,
+            )
 
     def _measured(self, topic: Topic, content: bytes) -> Measured | None:
         """Return what a message says of the hand; None where it says nothing of it, or is refused."""

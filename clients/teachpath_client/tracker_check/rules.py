@@ -98,7 +98,8 @@ def _parsed(payload: bytes) -> HandSample | None:
 
 def _values(sample: HandSample) -> str:
     p, q = sample.position, sample.orientation
-    return sample_fault((p.x, p.y, p.z), (q.w, q.x, q.y, q.z), tuple(sample.flexions), sample.device_ns)
+    turn, flexions, joints = (q.w, q.x, q.y, q.z), tuple(sample.flexions), tuple(sample.joints)
+    return sample_fault((p.x, p.y, p.z), turn, flexions, sample.device_ns, joints)
 
 
 def _sample_fault(seen: Observation, samples: Sequence[HandSample]) -> str:

@@ -199,6 +199,7 @@ class SampleFields:
         flexions: of a glove, 0 (open) to 1 (closed); 18, 22 or none.
         tracked: whether the device saw the hand; else the pose is a guess.
         buttons: bit 0 grasp (of a hand without a glove), bit 1 pedal, bit 2 clutch of a live arm.
+        joints: of an arm that shows the task, in the order of the station's arm [rad]; 6, 7 or none.
     """
 
     sequence: int
@@ -208,6 +209,7 @@ class SampleFields:
     orientation: SampleOrientation | None = None
     flexions: list[float] | None = None
     buttons: int = 0
+    joints: list[float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

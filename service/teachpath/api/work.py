@@ -25,7 +25,7 @@ from teachpath.records import Job, LearnedPath, PathSummary, Plan, PlanSummary, 
 FIELDS_OF_KIND: Final = {
     "learn": {"kind", "settings", "calibrations"},
     "recut": {"kind", "run", "threshold", "clusters", "calibrations"},
-    "plan": {"kind", "path", "version"},
+    "plan": {"kind", "path", "version", "posture"},
 }
 
 
@@ -37,6 +37,10 @@ IdempotencyKey = Annotated[
         description="a text of yours, new for each order; an order that comes again with it begins nothing, and is "
         "answered with its job",
     ),
+]
+WantedPosture = Annotated[
+    Literal["shown", "free"],
+    Field(description="plan: shown prefers the joints of a demonstration that an arm showed, where there is one"),
 ]
 OfTask = Annotated[str | None, Query(description="name of the task; all unless given")]
 
@@ -61,6 +65,7 @@ class NewJob(Body):
     version: int | None = Field(
         None, ge=1, description="plan: number of its version; without it the newest on its main branch"
     )
+    posture: WantedPosture = "shown"
 
     @model_validator(mode="after")
     def refuse_fields_of_other_kinds(self) -> Self:
@@ -85,6 +90,7 @@ class NewPlan(Body):
     version: int | None = Field(
         None, ge=1, description="number of the version; without it the newest on the main branch"
     )
+    posture: WantedPosture = "shown"
 
 
 def jobs_router(parts: Parts) -> APIRouter:
@@ -127,7 +133,7 @@ def jobs_router(parts: Parts) -> APIRouter:
             with named_in_body("path"):
                 path = wanted_version(store, new.path, new.version)
                 _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
-            order = {"path": path.id, "version": path.version}
+            order = _planning_order(path, new.posture)
         submitter = submitter_of(request, sender)
         job = jobs.submit(stored.name, new.kind, order, submitter, who=sender.name, idempotency_key=key)
         return accepted(job, response)
@@ -229,8 +235,9 @@ def _add_paths(router: APIRouter, parts: Parts) -> None:
         key: IdempotencyKey = "",
     ) -> Job:
         """Queue the planning of a version of a path; `Location` names the job, its outcome the plan."""
-        stored = wanted_version(store, path, new.version if new else None)
-        order = {"path": stored.id, "version": stored.version}
+        new = new or NewPlan()
+        stored = wanted_version(store, path, new.version)
+        order = _planning_order(stored, new.posture)
         task, submitter = store.run(stored.run).task, submitter_of(request, sender)
         job = jobs.submit(task, "plan", order, submitter, who=sender.name, idempotency_key=key)
         return accepted(job, response)
@@ -250,6 +257,10 @@ def accepted(job: Job, response: Response) -> Job:
     """Return a queued job as the answer; `Location` names it."""
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
     return job
+
+
+def _planning_order(path: LearnedPath, posture: str) -> dict[str, Any]:
+    return {"path": path.id, "version": path.version} | ({"posture": posture} if posture != "shown" else {})
 
 
 def _of_task(task: str, owner: str, what: str) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from datetime import datetime
 
 from rich.console import Console
 from rich.table import Table
 
 from teachpath.lengths import describe_length
-from teachpath_client.models import Dendrogram, Plan, Run, Signature
+from teachpath_client.models import Dendrogram, Plan, Posture, Run, Signature
 
 
 def print_run(run: Run, numbers: dict[str, int], console: Console | None = None) -> None:
@@ -110,8 +111,16 @@ def plan_lines(plan: Plan) -> str:
         f"  largest use of the limits: {', '.join(f'{name} {use.value:.0%}' for name, use in uses.items())}\n"
         f"{speed_line}"
         f"  least clearance {describe_length(c.clearance.value)} ({c.clearance.place})\n"
+        f"{_posture(plan.posture)}"
         f"  {_scope(c.signature)}"
     )
+
+
+def _posture(posture: Posture | None) -> str:
+    if posture is None:
+        return ""
+    away = f"{math.degrees(posture.distance.value):.1f} deg ({posture.distance.place})"
+    return f"  at most {away} from the joints shown in demonstration {posture.demonstration}\n"
 
 
 def _scope(signature: Signature | None) -> str:

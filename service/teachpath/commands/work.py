@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -115,6 +115,9 @@ def recalibrate(
 def plan(
     path: Annotated[str, typer.Argument(help="TASK/CLUSTER, or an id or its beginning.")],
     version: Annotated[int | None, typer.Option(help="Its version; the newest on its main branch.")] = None,
+    posture: Annotated[
+        Literal["shown", "free"], typer.Option(help="Prefer the joints that an arm showed, where one did; or not.")
+    ] = "shown",
     url: Url = "",
     json_: Json = False,
 ) -> None:
@@ -124,7 +127,7 @@ def plan(
     with connected(url) as station:
         found = find_path(station, path)
         with progress_bar("planning") as show:
-            made = station.plan(found, version, on_change=job_shown(show))
+            made = station.plan(found, version, posture=posture, on_change=job_shown(show))
     print_answer(made, plan_lines(made), json_=json_)
 
 

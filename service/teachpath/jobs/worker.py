@@ -16,7 +16,6 @@ import time
 import uuid
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from multiprocessing import parent_process
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -27,9 +26,8 @@ from teachpath.jobs.executors import Work
 from teachpath.jobs.process_pipe import send
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.planning.signature import CalibrationScope, SigningKey, sign_plan
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Learned, LearnedPath, Plan, Scene, Trajectory
+from teachpath.records import Learned, LearnedPath, Plan, Scene, ShownPosture, Trajectory
 
 log: logging.Logger = logging.getLogger("teachpath")
 
@@ -167,34 +165,17 @@ def recut_run(
     return relearn(learned, demonstrations, threshold=threshold, clusters=clusters, progress=progress)
 
 
-@dataclass(frozen=True)
-class Signer:
-    """What a plan is signed with as soon as it is certified."""
-
-    key: SigningKey
-    calibrations: CalibrationScope
-
-
-PlanOrder = tuple[LearnedPath, Scene, MotionSettings, Arm]
-
-
-def without_signer(path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, signer: Signer) -> PlanOrder:
-    """Return what a path is planned from; the key stays here."""
-    del signer
-    return path, scene, settings, arm
-
-
-def plan_path(path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, *, progress: Progress) -> Plan:
-    """Plan one path."""
+def plan_path(
+    path: LearnedPath,
+    scene: Scene,
+    settings: MotionSettings,
+    arm: Arm,
+    shown: ShownPosture | None,
+    *,
+    progress: Progress,
+) -> Plan:
+    """Plan one path, near to the joints that were shown."""
     from teachpath.motion.planning.plan import plan
 
     progress(0.1, f"planning path {path.id}")
-    return plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}")
-
-
-def sign_planned(
-    made: Plan, path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, signer: Signer
-) -> Plan:
-    """Sign a plan that was made of these."""
-    del path, scene
-    return sign_plan(made, arm, settings, signer.key, issued_ns=time.time_ns(), calibrations=signer.calibrations)
+    return plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}", shown=shown)

@@ -86,6 +86,9 @@ def _as_measured(takes: list[list[Sample]], *, turned: bool) -> dict[str, Featur
     sensors = {len(s.flexions) for take in takes for s in take}
     if len(sensors) == 1 and 0 not in sensors:
         found["observation.flexions"] = several("flexions", "float32", [f"f{i + 1}" for i in range(*sensors)])
+    joints = {len(s.joints) for take in takes for s in take}  # of an arm that showed the task
+    if len(joints) == 1 and 0 not in joints:
+        found["observation.joints"] = several("joints", "float64", [f"j{i + 1}" for i in range(*joints)])
     return found
 
 

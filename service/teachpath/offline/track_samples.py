@@ -109,6 +109,7 @@ def samples_of(track: Track, name: str, marks: PhaseMarks, settings: RecordingSe
         position: Vector = (x, y, z)
         bent = () if flexions is None else tuple(np.nan_to_num(flexions[k]).tolist())
         button = GRASP_BUTTON if closed[k] else 0
+        joints = () if track.joints is None else tuple(track.joints[k].tolist())
         samples.append(
             Sample(
                 name,
@@ -120,6 +121,7 @@ def samples_of(track: Track, name: str, marks: PhaseMarks, settings: RecordingSe
                 bent,
                 bool(tracked[k]),
                 button,
+                joints,
             )
         )
     return TrackSamples(samples, phases, dwell_times, _notes(track))

@@ -18,6 +18,7 @@ from teachpath.recording.grip_flaps import find_grip_flaps
 from teachpath.recording.phase_statistics import PhaseStatistics, phase_statistics, tell_arrivals
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.position_outliers import find_outliers
+from teachpath.recording.posture import joint_count
 from teachpath.recording.quality import QualityReport, assess_quality, reassess_quality
 from teachpath.recording.repeated_readings import find_repeated_readings
 from teachpath.recording.settings import RecordingSettings
@@ -135,6 +136,7 @@ def add_content_faults(take: SegmentedTake, settings: RecordingSettings) -> tupl
         longest_freeze_ns=round(1e9 * repeated.longest),
         freeze_at_ns=int(ordered.device_ns[repeated.longest_at] - carried.device_ns[0]) if repeated.indices else 0,
         measured_rate=repeated.measured_rate,
+        joints=joint_count(carried),
     )
     left_out = {*found.outliers, *ordered.sequence[stale].tolist(), *foreign}
     return statistics, tuple(sorted(left_out))

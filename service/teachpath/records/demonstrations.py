@@ -46,7 +46,8 @@ class Sample(NamedTuple):  # which is made in a fifth of the time of a frozen da
     """One reading of glove and tracker, checked.
 
     `position` [m] and `orientation` (None when not measured) are in the tracker frame; `flexions` run from 0 (open)
-    to 1 (closed); `device_ns` is the device's clock, `receive_ns` ours.
+    to 1 (closed); `device_ns` is the device's clock, `receive_ns` ours; `joints` [rad] are those of an arm that shows
+    the task, in the order of the station's arm, and empty where a hand shows it.
     """
 
     tracker: str
@@ -58,6 +59,7 @@ class Sample(NamedTuple):  # which is made in a fifth of the time of a frozen da
     flexions: tuple[float, ...]
     tracked: bool
     buttons: int = 0
+    joints: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +164,7 @@ class StreamStatistics:
         clock: of the device against the host's; None: not known.
         notes: what an operator should know, in words.
         dwell_times: where a hand without a glove dwells, if taking and putting are not sure [s].
+        joints: how many joints the arm has that showed it; 0: a hand did.
     """
 
     received: int = 0
@@ -193,6 +196,7 @@ class StreamStatistics:
     clock: Clock | None = None
     notes: tuple[str, ...] = ()
     dwell_times: tuple[float, ...] = ()
+    joints: int = 0
 
 
 @dataclass(frozen=True, slots=True)

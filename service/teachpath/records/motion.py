@@ -197,6 +197,32 @@ class Certificate:
 
 
 @dataclass(frozen=True, eq=False)
+class ShownPosture:
+    """The joints that a demonstration by an arm showed.
+
+    Attributes:
+        demonstration: its id.
+        joints: (k, joints) at even shares of the length of its way [rad].
+    """
+
+    demonstration: str
+    joints: Matrix
+
+
+@dataclass(frozen=True, slots=True)
+class Posture:
+    """How near a plan keeps to the joints that a demonstration showed.
+
+    Attributes:
+        demonstration: its id.
+        distance: of the joint that is farthest from what was shown, at the same share of the way's length [rad].
+    """
+
+    demonstration: str
+    distance: Extreme
+
+
+@dataclass(frozen=True, eq=False)
 class Plan:
     """Path plus timing plus certificate: all that the executor needs.
 
@@ -217,6 +243,7 @@ class Plan:
         duration: of the path at full speed [s].
         certificate: the proof that the arm can follow it.
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
+        posture: how near it keeps to the joints that were shown; None: no arm showed it, or they were not to count.
     """
 
     id: str
@@ -232,3 +259,4 @@ class Plan:
     duration: float
     certificate: Certificate
     tool_speed: float | None = None
+    posture: Posture | None = field(default=None, metadata=LATER)

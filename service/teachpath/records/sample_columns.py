@@ -25,6 +25,7 @@ class SampleColumns(Sequence[Sample]):
         orientation: (n, 4) w, x, y, z; zeros where it is not measured.
         flexions: (n, k), of which each sample has the first `flexion_count`.
         flexion_count: (n,).
+        joints: (n, j) [rad], of which each sample has the first that are numbers.
     """
 
     tracker: str
@@ -37,6 +38,7 @@ class SampleColumns(Sequence[Sample]):
     flexion_count: NDArray[np.int64]
     tracked: NDArray[np.bool_]
     buttons: NDArray[np.int64]
+    joints: Array
 
     @classmethod
     def of(cls, samples: Sequence[Sample]) -> SampleColumns:
@@ -44,7 +46,7 @@ class SampleColumns(Sequence[Sample]):
         if isinstance(samples, SampleColumns):
             return samples
         if not samples:
-            return cls.of_values("", *((),) * 8)
+            return cls.of_values("", *((),) * 9)
         return cls.of_values(samples[0].tracker, *([getattr(s, name) for s in samples] for name in VALUES))
 
     @classmethod
@@ -59,12 +61,12 @@ class SampleColumns(Sequence[Sample]):
         flexions: Sequence[tuple[float, ...]],
         tracked: Sequence[bool],
         buttons: Sequence[int],
+        joints: Sequence[tuple[float, ...]],
     ) -> SampleColumns:
         """Return n samples, of each value of which there are n."""
         n = len(sequence)
-        counts = np.fromiter(map(len, flexions), np.int64, n)
-        bent = np.zeros((n, int(counts.max(initial=0))))
-        bent[np.arange(bent.shape[1]) < counts[:, None]] = np.fromiter(chain.from_iterable(flexions), np.float64)
+        bent, counts = _rows(flexions, 0.0)
+        angles, _ = _rows(joints, np.nan)
         return cls(
             tracker,
             np.array(sequence, np.uint64),
@@ -76,6 +78,7 @@ class SampleColumns(Sequence[Sample]):
             counts,
             np.array(tracked, np.bool_),
             np.array(buttons, np.int64),
+            angles,
         )
 
     @classmethod
@@ -83,11 +86,12 @@ class SampleColumns(Sequence[Sample]):
         """Return the samples of parts, of which there is at least one, one part after the other."""
         if len(parts) == 1:
             return parts[0]
-        width = max(part.flexions.shape[1] for part in parts)
-        values = {name: np.concatenate([getattr(part, name) for part in parts]) for name in COLUMNS - {"flexions"}}
-        return cls(
-            parts[0].tracker, flexions=np.concatenate([_padded(part.flexions, width) for part in parts]), **values
-        )
+        values = {name: np.concatenate([getattr(part, name) for part in parts]) for name in COLUMNS - {*UNEVEN}}
+        values |= {
+            name: np.concatenate(_padded([getattr(part, name) for part in parts], lacking))
+            for name, lacking in UNEVEN.items()
+        }
+        return cls(parts[0].tracker, **values)
 
     def select(self, chosen: slice | NDArray[Any], tracker: str = "") -> SampleColumns:
         """Return the samples that a slice, a mask or indices choose, as of another tracker where that is named."""
@@ -103,7 +107,9 @@ class SampleColumns(Sequence[Sample]):
 
     def __iter__(self) -> Iterator[Sample]:
         plain = (getattr(self, name).tolist() for name in ORDERED)
-        for sequence, device_ns, receive_ns, p, q, flexions, count, tracked, buttons in zip(*plain, strict=True):
+        for sequence, device_ns, receive_ns, p, q, flexions, count, tracked, buttons, joints in zip(
+            *plain, strict=True
+        ):
             yield Sample(
                 self.tracker,
                 sequence,
@@ -114,6 +120,7 @@ class SampleColumns(Sequence[Sample]):
                 tuple(flexions[:count]),
                 tracked,
                 buttons,
+                tuple(angle for angle in joints if angle == angle) if joints else (),
             )
 
     @overload
@@ -132,8 +139,19 @@ class SampleColumns(Sequence[Sample]):
 ORDERED = tuple(field.name for field in fields(SampleColumns))[1:]
 COLUMNS = frozenset(ORDERED)
 VALUES = Sample._fields[1:]
+UNEVEN = {"flexions": 0.0, "joints": np.nan}  # columns of rows that may have fewer values, and what stands for these
 
 
-def _padded(flexions: NDArray[Any], width: int) -> NDArray[Any]:
-    lacking = width - flexions.shape[1]
-    return np.pad(flexions, ((0, 0), (0, lacking))) if lacking else flexions
+def _rows(values: Sequence[tuple[float, ...]], lacking: float) -> tuple[Array, NDArray[np.int64]]:
+    """Return values of n samples as rows of one array (n, k), filled with `lacking`, and how many each has (n,)."""
+    counts = np.fromiter(map(len, values), np.int64, len(values))
+    rows = np.full((len(values), int(counts.max(initial=0))), lacking)
+    rows[np.arange(rows.shape[1]) < counts[:, None]] = np.fromiter(chain.from_iterable(values), np.float64)
+    return rows, counts
+
+
+def _padded(parts: Sequence[NDArray[Any]], lacking: float) -> list[NDArray[Any]]:
+    width = max(part.shape[1] for part in parts)
+    fill = [width - part.shape[1] for part in parts]
+    pairs = zip(parts, fill, strict=True)
+    return [np.pad(part, ((0, 0), (0, more)), constant_values=lacking) if more else part for part, more in pairs]

@@ -26,6 +26,7 @@ def messages(draw: st.DrawFn) -> bytes:
         flexions=[draw(st.sampled_from([0.0, 0.3, 1.0, 1.1, math.nan]))] * draw(st.sampled_from([0, 18, 22, 3])),
         tracked=draw(st.booleans()),
         buttons=draw(st.sampled_from([0, 1, 2, 300, 2**32 - 1])),
+        joints=[draw(st.sampled_from([0.0, -3.1, 12.5, 13.0, math.nan]))] * draw(st.sampled_from([0, 6, 7, 5])),
     )
     if draw(st.booleans()):
         message.position.x, message.position.y, message.position.z = draw(st.tuples(numbers, numbers, numbers))

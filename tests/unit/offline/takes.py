@@ -52,7 +52,13 @@ def bare() -> list[Sample]:
     ]
 
 
-TAKES: dict[str, Callable[[], list[Sample]]] = {"whole": whole, "lossy": lossy, "bare": bare}
+def led() -> list[Sample]:
+    """Show with an arm that is led by hand, without a glove."""
+    random = np.random.default_rng(2)
+    return [s._replace(joints=tuple(random.uniform(-3.0, 3.0, 7).tolist())) for s in bare()]
+
+
+TAKES: dict[str, Callable[[], list[Sample]]] = {"whole": whole, "lossy": lossy, "bare": bare, "led": led}
 
 
 def record(store: Store, samples: Sequence[Sample], *, gone: bool = False, rate: float = 50.0) -> Demonstration:

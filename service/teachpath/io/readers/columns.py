@@ -84,13 +84,16 @@ def parse_columns(text: str) -> dict[str, str]:
     return named
 
 
-def map_columns(header: Sequence[str], named: Mapping[str, str], name: str) -> ColumnMap:
+def map_columns(
+    header: Sequence[str], named: Mapping[str, str], name: str, *, required: Sequence[str] = ("t", *POSITION)
+) -> ColumnMap:
     """Return which column holds what.
 
     Args:
         header: names of the columns; empty texts where there are none.
         named: columns of roles, as the user says: their names, or numbers from 1.
         name: of the file, for errors.
+        required: roles that there must be a column for.
 
     Raises:
         OptionNeeded: a column is missing, or two could be meant.
@@ -106,7 +109,7 @@ def map_columns(header: Sequence[str], named: Mapping[str, str], name: str) -> C
             raise OptionNeeded(f"{name}: {several} could all be {role}", "columns", f"{role}=...")
         if found:
             places[role] = found[0]
-    _require(header, places, name)
+    _require(header, places, name, required)
     flexions = _flexions(plain, name)
     used = {*places.values(), *flexions}
     return ColumnMap(
@@ -117,10 +120,10 @@ def map_columns(header: Sequence[str], named: Mapping[str, str], name: str) -> C
     )
 
 
-def _require(header: Sequence[str], places: Mapping[str, int], name: str) -> None:
+def _require(header: Sequence[str], places: Mapping[str, int], name: str, required: Sequence[str]) -> None:
     if len(set(places.values())) < len(places):
         raise OptionNeeded(f"{name}: one column has two roles", "columns")
-    missing = [role for role in ("t", *POSITION) if role not in places]
+    missing = [role for role in required if role not in places]
     rotation = [role for role in ROTATION if role not in places]
     if 0 < len(rotation) < len(ROTATION):
         missing += rotation
@@ -131,6 +134,11 @@ def _require(header: Sequence[str], places: Mapping[str, int], name: str) -> Non
             "columns",
             "t=1,x=2,y=3,z=4",
         )
+
+
+def plain_name(cell: str) -> str:
+    """Return a header in plain form: small letters, words joined by underscores, without its unit."""
+    return _without_unit(cell)[0]
 
 
 def _without_unit(cell: str) -> tuple[str, str]:

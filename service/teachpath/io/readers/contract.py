@@ -35,6 +35,7 @@ class ReadOptions:
         columns: where text tables have what: `t=Time,x=Position.X,y=2`, names or numbers of columns from 1.
         quaternion: order of four columns that have no names, `wxyz` or `xyzw`.
         track: name of the one to read, of a file with several.
+        joints: names of the joints of the station's arm, by which columns of joint angles are known.
     """
 
     units: str = ""
@@ -43,6 +44,7 @@ class ReadOptions:
     columns: str = ""
     quaternion: str = ""
     track: str = ""
+    joints: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +98,7 @@ class Track:
         numbers: (n,) of the readings in the file, or None.
         closure: (n,) how far the hand is closed, 0 to 1, or None: the file does not tell.
         flexions: (n, 18 or 22) of a glove, 0 to 1, or None.
+        joints: (n, joints) of the station's arm [rad], which showed the motion, or None.
     """
 
     stamps_ns: Integers
@@ -105,6 +108,7 @@ class Track:
     numbers: Integers | None = None
     closure: Array | None = None
     flexions: Array | None = None
+    joints: Array | None = None
 
     @property
     def times(self) -> Array:
@@ -128,11 +132,13 @@ class JointTrack:
         stamps_ns: (n,) of the device's clock, whatever its epoch.
         names: of the joints (k,), perhaps more than the arm has, in any order.
         angles: (n, k) [rad].
+        closure: (n,) how far the gripper is closed, 0 to 1, or None: the file does not tell.
     """
 
     stamps_ns: Integers
     names: tuple[str, ...]
     angles: Array
+    closure: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,4 +69,4 @@ def _tool_track(track: JointTrack, arm: ToolKinematics, name: str) -> Track:
         )
     poses = arm.tool_poses(angles)
     turns = Rotation.from_matrix(poses[:, :3, :3]).as_quat(scalar_first=True)
-    return Track(track.stamps_ns, poses[:, :3, 3], np.asarray(turns))
+    return Track(track.stamps_ns, poses[:, :3, 3], np.asarray(turns), closure=track.closure, joints=angles)

@@ -117,6 +117,7 @@ def read_motions(
     if not content:
         raise UnusableRecording(f"{name}: the file is empty")
     reader = readers()[kind or recognized(content, name)]
+    options = replace(options, joints=() if arm is None else arm.joints)
     try:
         if file is not None and reader.read_file is not None:
             found = reader.read_file(file, name, options, limits, progress)

@@ -12,6 +12,7 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.columns import POSITION, ROTATION, ColumnMap, map_columns, parse_columns
 from teachpath.io.readers.contract import UNITS, FileMotions, Integers, OptionNeeded, Reader, ReadOptions, Track
+from teachpath.io.readers.joint_columns import joint_places, read_joint_rows
 from teachpath.io.readers.text import cells_of, delimiter_of, is_comment, is_number, numbered_lines, table
 from teachpath.io.readers.time_units import stamps_of, time_unit
 from teachpath.records import Array
@@ -22,6 +23,8 @@ Rows = list[tuple[int, list[str]]]
 def read_table(content: bytes, name: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
     """Read a table whose columns have names, or are named by the options."""
     rows, header, delimiter = _split(content, name, limits)
+    if places := joint_places(header, options):
+        return read_joint_rows(rows, header, delimiter, name, options, places)
     return read_rows(rows, header, delimiter, name, options)
 
 

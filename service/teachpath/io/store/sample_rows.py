@@ -12,7 +12,7 @@ from typing import NamedTuple, overload
 from teachpath.records import Quaternion, Sample, SampleColumns, Vector
 
 # No named tuple: the collector passes over tuples of plain values, but not over those of a class of ours.
-Row = tuple[int, int, int, Vector, Quaternion | None, tuple[float, ...], bool, int]
+Row = tuple[int, int, int, Vector, Quaternion | None, tuple[float, ...], bool, int, tuple[float, ...]]
 
 
 class ValueColumns(NamedTuple):
@@ -26,6 +26,7 @@ class ValueColumns(NamedTuple):
     flexions: tuple[tuple[float, ...], ...]
     tracked: tuple[bool, ...]
     buttons: tuple[int, ...]
+    joints: tuple[tuple[float, ...], ...]
 
 
 class SampleRows(Sequence[Sample]):

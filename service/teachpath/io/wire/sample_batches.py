@@ -7,13 +7,21 @@ which may be refused, is left to `decode_sample`, which says what is wrong with 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.records import SampleColumns
-from teachpath_proto.sample_rules import FLEXION_COUNTS, MAX_COORDINATE, MAX_SAMPLE_SIZE, UNIT_TOLERANCE
+from teachpath_proto.sample_rules import (
+    FLEXION_COUNTS,
+    JOINT_COUNTS,
+    MAX_ANGLE,
+    MAX_COORDINATE,
+    MAX_SAMPLE_SIZE,
+    UNIT_TOLERANCE,
+)
 
 MAX_LAYOUTS: Final = 64  # that are remembered
 MAX_TRIES: Final = 8  # layouts that are looked for among the messages of one size
@@ -23,6 +31,7 @@ VARINT, FIXED64, BYTES = 0, 1, 2  # wire types of protobuf
 VARINT_FIELDS: Final = {1: "sequence", 2: "device_ns", 6: "tracked", 7: "buttons"}
 VECTOR_FIELDS: Final = {3: (0, 3), 4: (3, 4)}  # first and number of the doubles of position and orientation
 FLEXIONS_FIELD: Final = 5
+JOINTS_FIELD: Final = 8
 
 Bytes = NDArray[np.uint8]
 
@@ -55,12 +64,14 @@ class SampleBatchDecoder:
             np.zeros(n, np.int64),
             np.zeros(n, np.bool_),
             np.zeros(n, np.int64),
+            np.full((n, max(JOINT_COUNTS)), np.nan),
         )
         sizes = np.fromiter(map(len, payloads), np.int64, n)
         for size in set(sizes.tolist()):
             if 0 < size <= MAX_SAMPLE_SIZE:
                 self._decode_size(payloads, np.flatnonzero(sizes == size), columns, usable)
-        return columns, usable
+        width = int(np.isfinite(columns.joints).any(axis=0).sum())
+        return replace(columns, joints=columns.joints[:, :width]), usable
 
     def _decode_size(
         self, payloads: Sequence[bytes], left: NDArray[np.int64], columns: SampleColumns, usable: NDArray[np.bool_]
@@ -101,7 +112,7 @@ class _Layout:
         self.size = len(payload)
         self._varints: dict[str, slice] = {}
         self._doubles: list[int] = []  # which of position and orientation
-        self._flexions = slice(0, 0)
+        self._flexions = self._joints = slice(0, 0)
         starts: list[int] = []  # of the doubles
         # of each byte, what is the same in all messages of this layout: all bits of a mark, the highest of a number
         self._mask = np.full(self.size, 0xFF, np.uint8)
@@ -113,24 +124,23 @@ class _Layout:
                 end = _varint_end(payload, at)
                 self._varints[VARINT_FIELDS[field]] = slice(at, end)
                 self._mask[at:end] = 0x80
-            elif kind == BYTES and (field in VECTOR_FIELDS or field == FLEXIONS_FIELD):
+            elif kind == BYTES and (field in VECTOR_FIELDS or field in (FLEXIONS_FIELD, JOINTS_FIELD)):
                 end, at = _length(payload, at)
                 if field == FLEXIONS_FIELD:
                     self._flexions = slice(at, end)
+                    self._mask[at:end] = 0
+                elif field == JOINTS_FIELD:
+                    self._joints = slice(at, end)
                     self._mask[at:end] = 0
                 else:
                     self._add_vector(payload, at, end, starts, *VECTOR_FIELDS[field])
             else:
                 raise ValueError(f"field {field} of type {kind}")
             at = end
-        if (self._flexions.stop - self._flexions.start) // 4 not in FLEXION_COUNTS or self._flexion_bytes % 4:
-            raise ValueError("another number of flexions")
+        _check_count(self._flexions, 4, FLEXION_COUNTS)
+        _check_count(self._joints, 8, JOINT_COUNTS)
         self._marks = np.frombuffer(payload, np.uint8) & self._mask
         self._places = np.array([start + byte for start in starts for byte in range(8)], np.int64)
-
-    @property
-    def _flexion_bytes(self) -> int:
-        return self._flexions.stop - self._flexions.start
 
     def _add_vector(self, payload: bytes, at: int, end: int, starts: list[int], first: int, count: int) -> None:
         seen: set[int] = set()
@@ -161,6 +171,7 @@ class _Layout:
         numbers[:, self._doubles] = np.take(rows, self._places, axis=1).view("<f8")
         position, turn = numbers[:, :3], numbers[:, 3:]
         flexions = np.ascontiguousarray(rows[:, self._flexions]).view("<f4")
+        joints = np.ascontiguousarray(rows[:, self._joints]).view("<f8")
         device_ns = self._integers(rows, "device_ns").astype(np.int64)
         turned = turn.any(axis=1)
         with np.errstate(all="ignore"):  # what is not finite is left to `decode_sample`
@@ -168,6 +179,7 @@ class _Layout:
             turn = turn / norm[:, None]
             fit = (np.abs(position) <= MAX_COORDINATE).all(axis=1) & (device_ns > 0)
             fit &= ((flexions >= 0.0) & (flexions <= 1.0)).all(axis=1)
+            fit &= (np.abs(joints) <= MAX_ANGLE).all(axis=1)
             fit &= np.abs(norm - 1.0) <= UNIT_TOLERANCE - ROUNDING
         columns.sequence[indices] = self._integers(rows, "sequence")
         columns.device_ns[indices] = device_ns
@@ -175,6 +187,7 @@ class _Layout:
         columns.orientation[indices] = turn
         columns.flexions[indices, : flexions.shape[1]] = flexions
         columns.flexion_count[indices] = flexions.shape[1]
+        columns.joints[indices, : joints.shape[1]] = joints
         columns.tracked[indices] = self._integers(rows, "tracked") != 0
         columns.buttons[indices] = (self._integers(rows, "buttons") & np.uint64(0xFFFFFFFF)).astype(np.int64)
         usable[indices] = fit
@@ -188,6 +201,13 @@ class _Layout:
             for shift, column in enumerate(range(place.start, place.stop)):
                 total |= (rows[:, column] & 0x7F).astype(np.uint64) << np.uint64(7 * shift)
         return total
+
+
+def _check_count(place: slice, size: int, counts: tuple[int, ...]) -> None:
+    """Check that the bytes at a place are one of `counts` values of `size` bytes; raises ValueError."""
+    count, rest = divmod(place.stop - place.start, size)
+    if rest or count not in counts:
+        raise ValueError("another number of flexions or joints")
 
 
 def _norm(turn: NDArray[np.float64]) -> NDArray[np.float64]:

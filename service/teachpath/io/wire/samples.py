@@ -25,12 +25,13 @@ def decode_sample(tracker: str, payload: bytes, receive_ns: int) -> Sample:
     p, q = message.position, message.orientation
     # a slice first: a quarter of the time of iterating over the message's own sequence
     position, turn, flexions = (p.x, p.y, p.z), (q.w, q.x, q.y, q.z), tuple(message.flexions[:])
+    joints = tuple(message.joints[:])
     sequence, device_ns = message.sequence, message.device_ns
-    if fault := sample_fault(position, turn, flexions, device_ns):
+    if fault := sample_fault(position, turn, flexions, device_ns, joints):
         raise UnusableSample(f"sample {sequence} of {tracker}: {fault}", sequence=sequence)
     orientation = None if turn == NOT_MEASURED else _normalized(turn)
     tracked, buttons = message.tracked, message.buttons
-    return Sample(tracker, sequence, device_ns, receive_ns, position, orientation, flexions, tracked, buttons)
+    return Sample(tracker, sequence, device_ns, receive_ns, position, orientation, flexions, tracked, buttons, joints)
 
 
 def encode_sample(sample: Sample) -> bytes:
@@ -48,6 +49,7 @@ def encode_sample(sample: Sample) -> bytes:
         flexions=sample.flexions,
         tracked=sample.tracked,
         buttons=sample.buttons,
+        joints=sample.joints,
     ).SerializeToString()
 
 

@@ -19,6 +19,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.arm.serial_ik import nearest_turn
 from teachpath.motion.paths.numeric_branches import follow_near
+from teachpath.motion.paths.posture import posture_cost
 from teachpath.motion.paths.redundancy import Redundancy
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
@@ -185,7 +186,8 @@ def jumps(joints: Array) -> NDArray[np.bool_]:
 def candidate_of(path: ToolPath, branch: IkBranch, roll: ToolRoll) -> Candidate:
     """Return the candidate of a branch with a roll of the tool."""
     limits = branch.arm.limits
-    joints = shift_within_limits(roll_tool(branch.joints, roll(path.parameters), branch.arm), limits)
+    turned = roll_tool(branch.joints, roll(path.parameters), branch.arm)
+    joints = shift_within_limits(turned, limits, path.posture)
     excess = np.maximum(joints - limits.upper, limits.lower - joints)
     return Candidate(f"{branch.name}, {roll}", branch, roll, joints, excess)
 
@@ -195,11 +197,26 @@ def shift_near(joints: Array, first: Array) -> Array:
     return np.asarray(joints + 2 * np.pi * np.round((first - joints[0]) / (2 * np.pi)), dtype=np.float64)
 
 
-def shift_within_limits(joints: Array, limits: JointLimits) -> Array:
-    """Shift each joint of continuous configurations (n, joints) by whole turns, nearest to the middle of its range."""
-    middle = (joints.max(axis=0) + joints.min(axis=0)) / 2
-    turns = np.round(((limits.lower + limits.upper) / 2 - middle) / (2 * np.pi))
-    return np.asarray(joints + 2 * np.pi * turns, dtype=np.float64)
+def shift_within_limits(joints: Array, limits: JointLimits, posture: Array | None = None) -> Array:
+    """Shift each joint of continuous configurations (n, joints) by whole turns, nearest to the middle of its range.
+
+    Where joints (n, joints) are preferred, each joint is shifted nearest to these if that is within its limits.
+    """
+    middle = _middle(joints)
+    central = joints + _turns((limits.lower + limits.upper) / 2 - middle)
+    if posture is None:
+        return np.asarray(central, dtype=np.float64)
+    near = joints + _turns(_middle(posture) - middle)
+    within = np.all((near >= limits.lower) & (near <= limits.upper), axis=0)
+    return np.asarray(np.where(within, near, central), dtype=np.float64)
+
+
+def _middle(joints: Array) -> Array:
+    return np.asarray((joints.max(axis=0) + joints.min(axis=0)) / 2)
+
+
+def _turns(angles: Array) -> Array:
+    return np.asarray(2 * np.pi * np.round(angles / (2 * np.pi)))
 
 
 def node_faults(candidate: Candidate, settings: MotionSettings) -> NDArray[np.str_]:
@@ -217,16 +234,17 @@ def is_usable(candidate: Candidate, settings: MotionSettings) -> bool:
     return candidate.feasible and candidate.min_singular_value >= settings.least_singular
 
 
-def cost(candidate: Candidate, settings: MotionSettings) -> float:
+def cost(candidate: Candidate, settings: MotionSettings, posture: Array | None = None) -> float:
     """Return the cost of a candidate: low far from singular poses and joint limits, and near to the arm's home.
 
-    A second of travel from home costs 0.2.
+    A second of travel from home costs 0.2. Where joints `posture` (n, joints) are preferred, it is low near these.
     """
     limits = candidate.branch.arm.limits
     middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
     use = np.abs(candidate.joints - middle).max(axis=0) / half
     travel = np.abs(candidate.joints[0] - np.array(settings.home)) / limits.speed
-    return float(0.1 / candidate.min_singular_value + use.max() + 0.2 * travel.max())
+    away = posture_cost(candidate.joints, posture).mean()
+    return float(0.1 / candidate.min_singular_value + use.max() + 0.2 * travel.max() + away)
 
 
 def nearest_to_usable(every: Sequence[Candidate]) -> Candidate:

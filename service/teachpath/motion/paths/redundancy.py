@@ -22,6 +22,7 @@ from teachpath.motion.arm.serial_ik import CLOSED, RESIDUAL, geometry, limits_of
 from teachpath.motion.arm.serial_kinematics import serial_jacobian
 from teachpath.motion.paths.grid_search import cheapest_sequence, smoothed
 from teachpath.motion.paths.numeric_branches import FOLLOWING, TrackedSolution
+from teachpath.motion.paths.posture import posture_cost
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Array, SerialArm
 
@@ -55,8 +56,14 @@ class Sheet:
     joints: Array
     off: Array
 
-    def costs(self, arm: Arm, settings: MotionSettings) -> Array:
-        """Return the cost (m, k) of each configuration (see `ik_branches.cost`); infinite where the arm cannot be."""
+    def costs(self, arm: Arm, settings: MotionSettings, posture: Array | None = None) -> Array:
+        """Return the cost (m, k) of each configuration (see `ik_branches.cost`); infinite where the arm cannot be.
+
+        Args:
+            arm: whose configurations they are.
+            settings: where the arm waits, and how near to a singular pose it may come.
+            posture: (n, joints) at all nodes of the path that are preferred; None: any.
+        """
         limits = arm.limits
         middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
         use = (np.abs(self.joints - middle) / half).max(axis=2)
@@ -66,7 +73,7 @@ class Sheet:
         costs[free] = np.where(values >= settings.least_singular, 0.1 / np.maximum(values, 1e-9) + use[free], np.inf)
         travel = np.abs(self.joints[0] - np.array(settings.home)) / limits.speed
         costs[0] += 0.2 * travel.max(axis=1)
-        return costs
+        return costs + posture_cost(self.joints, None if posture is None else posture[self.nodes][:, None])
 
     def cheapest(self, costs: Array, stride: int = 1) -> NDArray[np.int64] | None:
         """Return the angles' numbers (m,) of the cheapest sequence through costs (m, k) of rows; None without one."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final
 
@@ -69,6 +69,7 @@ class ToolPath:
         lengths: (n,) arc length of the nodes [m].
         parameters: (n,) of the curve at the nodes.
         positions: (n, 3) [m], world.
+        posture: (n, joints) at the nodes that a plan prefers [rad]; None: any.
     """
 
     curve: Curve
@@ -77,6 +78,7 @@ class ToolPath:
     lengths: Array
     parameters: Array
     positions: Array
+    posture: Array | None = None
 
     @staticmethod
     def at_even_lengths(curve: Curve, orientation: Curve | None, arc: ArcLength, count: int) -> ToolPath:
@@ -84,6 +86,10 @@ class ToolPath:
         lengths = np.linspace(0.0, arc.total, count + 1)
         parameters = arc.parameters(lengths)
         return ToolPath(curve, orientation, arc, lengths, parameters, curve(parameters))
+
+    def preferring(self, posture: Array) -> ToolPath:
+        """Return the same path with the joints (n, joints) at its nodes that a plan prefers [rad]."""
+        return replace(self, posture=posture)
 
     def poses(self, u: Array) -> Array:
         """Return the tool's poses (m, 4, 4) to world at parameters (m,), without any roll about its own axis.

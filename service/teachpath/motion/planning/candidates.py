@@ -12,14 +12,20 @@ from teachpath.motion.planning.clearance import SUFFICIENT_CLEARANCE, rough_clea
 from teachpath.motion.planning.redundancy_search import swivelled_candidates
 from teachpath.motion.planning.tool_roll import rolling_candidates
 from teachpath.motion.settings import MotionSettings
+from teachpath.records import Array
 
 CLEARANCE_GAIN: Final = 20.0  # 1/m, by which a metre of clearance lowers the cost, up to `SUFFICIENT_CLEARANCE`
 
 
-def usable_candidates(candidates: Sequence[Candidate], settings: MotionSettings) -> list[Candidate]:
-    """Return those that reach everything, keep the joint limits and are never singular, the cheapest first."""
+def usable_candidates(
+    candidates: Sequence[Candidate], settings: MotionSettings, posture: Array | None = None
+) -> list[Candidate]:
+    """Return those that reach everything, keep the joint limits and are never singular, the cheapest first.
+
+    Where joints `posture` (n, joints) are preferred, they are cheap near these.
+    """
     usable = [candidate for candidate in candidates if is_usable(candidate, settings)]
-    return sorted(usable, key=lambda candidate: cost(candidate, settings))
+    return sorted(usable, key=lambda candidate: cost(candidate, settings, posture))
 
 
 def clear_candidates(
@@ -53,7 +59,7 @@ def _ranked(
         clearance = rough_clearance(tool_path, candidate, model, settings).value
         if clearance >= settings.clearance_min:
             worth = CLEARANCE_GAIN * min(clearance, SUFFICIENT_CLEARANCE)
-            clear.append((cost(candidate, settings) - worth, candidate))
+            clear.append((cost(candidate, settings, tool_path.posture) - worth, candidate))
         if clearance >= SUFFICIENT_CLEARANCE:
             break  # the candidates that follow cost more
     return clear

@@ -7,7 +7,7 @@ from dataclasses import replace
 from teachpath.errors import UnusableInput, UnusableSettings
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Scene
+from teachpath.records import Scene, ShownPosture
 
 
 def check_plannable(arm: Arm, scene: Scene) -> None:
@@ -21,6 +21,15 @@ def check_plannable(arm: Arm, scene: Scene) -> None:
             f"{arm.name} has no gripper that is known here, and scene {scene.name} has {scene.carried.name} to carry; "
             "plan in a scene without an object, where its tool follows the path, or mount teachpath's own gripper "
             "(teachpath arm add --gripper)"
+        )
+
+
+def check_shown(shown: ShownPosture, arm: Arm) -> None:
+    """Check that the joints that were shown may be an arm's; raises UnusableInput."""
+    if (count := shown.joints.shape[1]) != arm.joint_count:
+        raise UnusableInput(
+            f"demonstration {shown.demonstration} was shown by an arm of {count} joints, and {arm.name} has "
+            f"{arm.joint_count}: its posture cannot be preferred"
         )
 
 

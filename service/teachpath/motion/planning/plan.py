@@ -12,6 +12,7 @@ from teachpath.motion.arm.mounting import check_mounting
 from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
 from teachpath.motion.paths.enumeration import enumerate_candidates
 from teachpath.motion.paths.ik_branches import Candidate
+from teachpath.motion.paths.posture import distance_from_shown, toward_shown
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
 from teachpath.motion.planning.approach import find_approach, find_retreat
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
@@ -19,12 +20,12 @@ from teachpath.motion.planning.certificate import certify
 from teachpath.motion.planning.clearance import path_clearance
 from teachpath.motion.planning.digest import digest
 from teachpath.motion.planning.failure import no_candidate
-from teachpath.motion.planning.model_arms import check_home, check_plannable, with_home
+from teachpath.motion.planning.model_arms import check_home, check_plannable, check_shown, with_home
 from teachpath.motion.planning.start_grasp import check_start, grasping_candidates
 from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import LearnedPath, Plan, Scene
+from teachpath.records import LearnedPath, Plan, Scene, ShownPosture
 
 
 def plan(
@@ -34,6 +35,7 @@ def plan(
     *,
     arm: Arm | None = None,
     plan_id: str = "plan",
+    shown: ShownPosture | None = None,
 ) -> Plan:
     """Plan the pick and place along a path: the centre of the carried object follows it.
 
@@ -46,6 +48,8 @@ def plan(
         settings: what may be used of the arm; the defaults when None.
         arm: that is to follow the path; the one that the settings describe when None.
         plan_id: of the plan that is made.
+        shown: joints of this arm that are preferred, where one showed the path: of all ways to follow it the nearest to
+            these is taken that can be certified.
 
     Returns:
         A plan with its certificate.
@@ -53,7 +57,8 @@ def plan(
     Raises:
         PathRefused: the arm cannot follow it; the sentence says why, where, and which control point to move.
         UnusableSettings: the arm's home is outside the joint limits, or the gripper would stand in the wrist.
-        UnusableInput: the arm is a user's model, which has no gripper, and the scene an object to carry.
+        UnusableInput: the arm is a user's model, which has no gripper, and the scene an object to carry; or the joints
+            shown are of an arm with another number of joints.
     """
     settings = settings or MotionSettings()
     arm = arm or Arm.of_settings(settings)
@@ -64,13 +69,24 @@ def plan(
     tool_path = sample_tool_path(path.curve, settings, orientation=path.orientation)
     check_start(tool_path, scene, arm, settings)
     model = CollisionModel(scene, arm)
+    if shown is None:
+        return replace(_plan_along(path, tool_path, model, settings), id=plan_id)
+    check_shown(shown, arm)
+    ways = [toward_shown(tool_path, shown), tool_path]
+    made = first_accepted(ways, lambda way: _plan_along(path, way, model, settings))
+    posture = distance_from_shown(tool_path, made.joints, shown, arm.limits.names)
+    return certified_anew(replace(made, id=plan_id, posture=posture), arm)
+
+
+def _plan_along(path: LearnedPath, tool_path: ToolPath, model: CollisionModel, settings: MotionSettings) -> Plan:
+    """Plan along a tool path, near to the joints that it prefers; raises PathRefused."""
+    scene, arm = model.scene, model.arm
     candidates = grasping_candidates(tool_path, enumerate_candidates(tool_path, arm, settings), scene)
-    usable = usable_candidates(candidates, settings)
+    usable = usable_candidates(candidates, settings, tool_path.posture)
     clear = clear_candidates(tool_path, usable, model, settings)
     if not clear:
         raise no_candidate(tool_path, usable or candidates, model, settings)
-    certified = first_accepted(clear, lambda candidate: _certified_plan(path, tool_path, candidate, model, settings))
-    return replace(certified, id=plan_id)
+    return first_accepted(clear, lambda candidate: _certified_plan(path, tool_path, candidate, model, settings))
 
 
 def _certified_plan(
@@ -99,4 +115,9 @@ def _certified_plan(
         duration=timed.trajectory.duration,
         certificate=certify(tool_path, candidate, timed, clearance, settings),
     )
-    return replace(unsigned, certificate=replace(unsigned.certificate, digest=digest(unsigned, model.arm)))
+    return certified_anew(unsigned, model.arm)
+
+
+def certified_anew(made: Plan, arm: Arm) -> Plan:
+    """Return a plan with the digest of all that it says."""
+    return replace(made, certificate=replace(made.certificate, digest=digest(made, arm)))

@@ -8,7 +8,7 @@ from teachpath.lengths import describe_length
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.object_mass import object_mass
 from teachpath.motion.arm.tool import describe_tool
-from teachpath.records import Array, Certificate, Plan, Signature
+from teachpath.records import Array, Certificate, Plan, Posture, Signature
 
 
 def plan_notes(plan: Plan, arm: Arm) -> tuple[str, ...]:
@@ -24,6 +24,7 @@ def plan_notes(plan: Plan, arm: Arm) -> tuple[str, ...]:
         f"Limits of the joints, from the base: {_listed(plan.limits[0])} rad/s; {_listed(plan.limits[1])} rad/s^2; "
         f"{_listed(plan.limits[2])} rad/s^3.",
         _proved(plan, plan.certificate),
+        *([_near_shown(plan.posture)] if plan.posture else []),
         *([_scope(plan.certificate.signature)] if plan.certificate.signature else []),
         "Not covered: another arm, tool, payload or scene; the way to the first point; what a controller does between "
         "the points, as blending, filters and overrides; a tool or object held in another place.",
@@ -65,6 +66,11 @@ def _proved(plan: Plan, certificate: Certificate) -> str:
         f"Certificate {certificate.digest[:16]} proved, for this arm in scene {plan.scene.name}: limits used to at "
         f"most {shares}{clearance}."
     )
+
+
+def _near_shown(posture: Posture) -> str:
+    away = f"{np.degrees(posture.distance.value):.1f} deg ({posture.distance.place})"
+    return f"It keeps within {away} of the joints that demonstration {posture.demonstration} showed."
 
 
 def _scope(signature: Signature) -> str:

@@ -35,15 +35,15 @@ def swivelled_candidates(
         if arm.model is None or (redundancy := candidate.branch.redundancy) is None:
             continue
         sheet, number = redundancy.sheet, candidate.branch.index
-        if (sequence := _clear_sequence(sheet, candidate, model, settings)) is not None:
+        if (sequence := _clear_sequence(sheet, candidate, tool_path, model, settings)) is not None:
             found.append(redundant_candidate(tool_path, arm, arm.model, number, sheet, sequence, candidate.roll))
     return [candidate for candidate in found if is_usable(candidate, settings)]
 
 
 def _clear_sequence(
-    sheet: Sheet, candidate: Candidate, model: CollisionModel, settings: MotionSettings
+    sheet: Sheet, candidate: Candidate, tool_path: ToolPath, model: CollisionModel, settings: MotionSettings
 ) -> NDArray[np.int64] | None:
-    costs = sheet.costs(model.arm, settings)
+    costs = sheet.costs(model.arm, settings, tool_path.posture)
     rows = np.arange(len(costs))
     coarse = rows % COARSE_STRIDE == 0
     _add_clearances(costs, coarse, sheet, candidate, model, settings)

@@ -134,6 +134,7 @@ def test_a_leader_arm_shows_its_tool_and_its_gripper() -> None:
         assert measured is not None
         assert measured.grasps is grasps
         assert np.allclose(measured.position, service_tool_pose(np.array(HOME), PUMA)[:3, 3])
+        assert measured.joints == HOME
     assert read.read(joints({"fingers": 0.0, "wheel": 1.0})) is None
     with pytest.raises(Malformed, match="no joint leader_joint6"):
         read.read(joints({name: angle for name, angle in posed.items() if name != "leader_joint6"}))

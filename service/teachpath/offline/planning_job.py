@@ -1,0 +1,71 @@
+"""Planning jobs: the joints that were shown are read here, and the plan is signed here, whoever plans."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from teachpath.io.store.recordings import Recordings
+from teachpath.io.store.store import Store
+from teachpath.motion.arm.model import Arm
+from teachpath.motion.planning.signature import CalibrationScope, SigningKey, sign_plan
+from teachpath.motion.settings import MotionSettings
+from teachpath.recording.phases import TransportSpan
+from teachpath.recording.posture import shown_joints
+from teachpath.records import Demonstration, LearnedPath, Plan, Scene, ShownPosture
+
+
+@dataclass(frozen=True)
+class StoredPosture:
+    """A demonstration by an arm, whose joints are still to be read."""
+
+    recordings: Recordings
+    row: Demonstration
+
+    def read(self) -> ShownPosture:
+        """Return the joints that it showed; raises NotFound, UnusableRecording or StorageUnavailable."""
+        row = self.row
+        samples = self.recordings.columns(row.recording, row.digest)
+        return ShownPosture(row.id, shown_joints(samples, TransportSpan(*row.transport), row.left_out))
+
+
+def find_posture(store: Store, task: str, path: LearnedPath, arm: Arm) -> StoredPosture | None:
+    """Return the most consistent demonstration of a path that an arm with as many joints showed; None without one."""
+    clusters = store.run(path.run).learned.clusters if path.run else ()
+    scores = [score for cluster in clusters if cluster.index == path.cluster for score in cluster.scores]
+    ranks = {score.demonstration: score.rank for score in scores if score.selected}
+    rows = [d for d in store.demonstrations(task) if d.id in ranks and d.statistics.joints == arm.joint_count]
+    return StoredPosture(store.recordings, min(rows, key=lambda row: ranks[row.id])) if rows else None
+
+
+@dataclass(frozen=True)
+class Signer:
+    """What a plan is signed with as soon as it is certified."""
+
+    key: SigningKey
+    calibrations: CalibrationScope
+
+
+PlanOrder = tuple[LearnedPath, Scene, MotionSettings, Arm, ShownPosture | None]
+
+
+def read_to_plan(
+    path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, posture: StoredPosture | None, signer: Signer
+) -> PlanOrder:
+    """Return what a path is planned from; the key stays here."""
+    del signer
+    return path, scene, settings, arm, posture and posture.read()
+
+
+def sign_planned(
+    made: Plan,
+    path: LearnedPath,
+    scene: Scene,
+    settings: MotionSettings,
+    arm: Arm,
+    posture: StoredPosture | None,
+    signer: Signer,
+) -> Plan:
+    """Sign a plan that was made of these."""
+    del path, scene, posture
+    return sign_plan(made, arm, settings, signer.key, issued_ns=time.time_ns(), calibrations=signer.calibrations)
