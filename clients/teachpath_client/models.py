@@ -1108,6 +1108,7 @@ class Plan:
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
         posture: how near it keeps to the joints that were shown; None: no arm showed it, or they were not to
             count.
+        output: of the arm that is on while the tool follows the path; None: none is.
     """
 
     id: str
@@ -1124,6 +1125,7 @@ class Plan:
     certificate: Certificate
     tool_speed: float | None
     posture: Posture | None
+    output: ToolOutput | None
 
 
 @dataclass(frozen=True)
@@ -1829,6 +1831,21 @@ class TimeSeries:
     gripper_closed: list[bool]
     tracking_error: list[float]
     lateness: list[float]
+
+
+@dataclass(frozen=True)
+class ToolOutput:
+    """An output of the arm that is on while the tool follows the path, e.g. of a nozzle, a spray gun or a torch.
+
+    Attributes:
+        name: of the output, as the arm's driver knows it.
+        start: for which the arm rests at the start of the path with it on [s].
+        end: for which the arm rests at the end of the path with it on [s].
+    """
+
+    name: str
+    start: float = 0.0
+    end: float = 0.0
 
 
 @dataclass(frozen=True)

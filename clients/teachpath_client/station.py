@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeVar
 from teachpath_client.control import ControlKeeper
 from teachpath_client.errors import ClientError, ExecutionFaulted, JobFailed, NotInTime
 from teachpath_client.events import Events
-from teachpath_client.models import Demonstration, Execution, Health, Job, Plan, Run
+from teachpath_client.models import Demonstration, Execution, Health, Job, Plan, Run, ToolOutput
 from teachpath_client.task_resources import TaskResources
 from teachpath_client.work_resources import WorkResources
 from teachpath_proto.control import ExecutorState
@@ -96,6 +96,7 @@ class Station(TaskResources, WorkResources):
         version: int | None = None,
         *,
         posture: Literal["shown", "free"] = "shown",
+        output: ToolOutput | None = None,
         on_change: Callable[[Job], object] = _nothing,
     ) -> Plan:
         """Plan a path and return the plan with its certificate.
@@ -104,12 +105,13 @@ class Station(TaskResources, WorkResources):
             path: id of a learned path.
             version: number of its version; None: the newest on the main branch.
             posture: `shown` prefers the joints of a demonstration that an arm showed, where there is one.
+            output: of the arm that is to be on while the tool follows the path; None: none.
             on_change: called with the job whenever it has gone on.
 
         Raises:
             JobFailed: the arm cannot follow it; `job.failure` says where, why, and which control point to move.
         """
-        return self.get_plan(self.outcome(self.begin_planning(path, version, posture), on_change))
+        return self.get_plan(self.outcome(self.begin_planning(path, version, posture, output), on_change))
 
     def run(
         self, plan: str, *, override: float = 1.0, on_change: Callable[[Execution], object] = _nothing

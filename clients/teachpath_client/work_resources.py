@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any, Literal
 
 from teachpath_client.models import (
@@ -23,6 +24,7 @@ from teachpath_client.models import (
     RunSummary,
     SavedVersion,
     TimeSeries,
+    ToolOutput,
     Version,
 )
 from teachpath_client.rest import Rest
@@ -40,11 +42,17 @@ class WorkResources(Rest):
         return self._ask(Job, "POST", f"/tasks/{task}/jobs", {"kind": kind} | request)
 
     def begin_planning(
-        self, path: str, version: int | None = None, posture: Literal["shown", "free"] = "shown"
+        self,
+        path: str,
+        version: int | None = None,
+        posture: Literal["shown", "free"] = "shown",
+        output: ToolOutput | None = None,
     ) -> Job:
         """Queue the planning of a path, in its newest version on the main branch or another one."""
-        wanted = {"posture": posture} if posture != "shown" else {}  # which stations of before refuse
-        return self._ask(Job, "POST", f"/paths/{path}/plans", {"version": version} | wanted)
+        wanted: dict[str, Any] = {"version": version}
+        wanted |= {"posture": posture} if posture != "shown" else {}  # which stations of before refuse, as the next one
+        wanted |= {"output": asdict(output)} if output else {}
+        return self._ask(Job, "POST", f"/paths/{path}/plans", wanted)
 
     def jobs(self, task: str = "", *, limit: int | None = None) -> list[Job]:
         """List a task's jobs, or all, newest first, or the newest `limit` of them."""

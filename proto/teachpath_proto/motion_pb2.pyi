@@ -8,7 +8,7 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class Setpoint(_message.Message):
-    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution", "on_path", "way_to_rest", "way_to_rest_velocity", "way_to_rest_acceleration", "from_rest")
+    __slots__ = ("cycle", "nominal_ns", "sent_ns", "position", "velocity", "acceleration", "gripper_closed", "execution", "on_path", "way_to_rest", "way_to_rest_velocity", "way_to_rest_acceleration", "from_rest", "output")
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     NOMINAL_NS_FIELD_NUMBER: _ClassVar[int]
     SENT_NS_FIELD_NUMBER: _ClassVar[int]
@@ -22,6 +22,7 @@ class Setpoint(_message.Message):
     WAY_TO_REST_VELOCITY_FIELD_NUMBER: _ClassVar[int]
     WAY_TO_REST_ACCELERATION_FIELD_NUMBER: _ClassVar[int]
     FROM_REST_FIELD_NUMBER: _ClassVar[int]
+    OUTPUT_FIELD_NUMBER: _ClassVar[int]
     cycle: int
     nominal_ns: int
     sent_ns: int
@@ -35,10 +36,11 @@ class Setpoint(_message.Message):
     way_to_rest_velocity: bytes
     way_to_rest_acceleration: bytes
     from_rest: bool
-    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ..., way_to_rest: _Optional[bytes] = ..., way_to_rest_velocity: _Optional[bytes] = ..., way_to_rest_acceleration: _Optional[bytes] = ..., from_rest: _Optional[bool] = ...) -> None: ...
+    output: str
+    def __init__(self, cycle: _Optional[int] = ..., nominal_ns: _Optional[int] = ..., sent_ns: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., acceleration: _Optional[_Iterable[float]] = ..., gripper_closed: _Optional[bool] = ..., execution: _Optional[str] = ..., on_path: _Optional[bool] = ..., way_to_rest: _Optional[bytes] = ..., way_to_rest_velocity: _Optional[bytes] = ..., way_to_rest_acceleration: _Optional[bytes] = ..., from_rest: _Optional[bool] = ..., output: _Optional[str] = ...) -> None: ...
 
 class JointState(_message.Message):
-    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late", "stopped", "enabled", "protective_stop", "fault", "gripper_opening")
+    __slots__ = ("stamp_ns", "cycle", "position", "velocity", "torque", "tracking_error", "missed", "holding", "gripper_closed", "object_position", "object_orientation", "execution", "late", "stopped", "enabled", "protective_stop", "fault", "gripper_opening", "output")
     STAMP_NS_FIELD_NUMBER: _ClassVar[int]
     CYCLE_FIELD_NUMBER: _ClassVar[int]
     POSITION_FIELD_NUMBER: _ClassVar[int]
@@ -57,6 +59,7 @@ class JointState(_message.Message):
     PROTECTIVE_STOP_FIELD_NUMBER: _ClassVar[int]
     FAULT_FIELD_NUMBER: _ClassVar[int]
     GRIPPER_OPENING_FIELD_NUMBER: _ClassVar[int]
+    OUTPUT_FIELD_NUMBER: _ClassVar[int]
     stamp_ns: int
     cycle: int
     position: _containers.RepeatedScalarFieldContainer[float]
@@ -75,7 +78,8 @@ class JointState(_message.Message):
     protective_stop: bool
     fault: str
     gripper_opening: float
-    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ..., stopped: _Optional[bool] = ..., enabled: _Optional[bool] = ..., protective_stop: _Optional[bool] = ..., fault: _Optional[str] = ..., gripper_opening: _Optional[float] = ...) -> None: ...
+    output: str
+    def __init__(self, stamp_ns: _Optional[int] = ..., cycle: _Optional[int] = ..., position: _Optional[_Iterable[float]] = ..., velocity: _Optional[_Iterable[float]] = ..., torque: _Optional[_Iterable[float]] = ..., tracking_error: _Optional[float] = ..., missed: _Optional[int] = ..., holding: _Optional[bool] = ..., gripper_closed: _Optional[bool] = ..., object_position: _Optional[_Iterable[float]] = ..., object_orientation: _Optional[_Iterable[float]] = ..., execution: _Optional[str] = ..., late: _Optional[int] = ..., stopped: _Optional[bool] = ..., enabled: _Optional[bool] = ..., protective_stop: _Optional[bool] = ..., fault: _Optional[str] = ..., gripper_opening: _Optional[float] = ..., output: _Optional[str] = ...) -> None: ...
 
 class ExecutorCommand(_message.Message):
     __slots__ = ("verb", "execution", "plan", "override", "length", "nodes", "lease", "who", "plan_id", "reason", "teleop", "id")

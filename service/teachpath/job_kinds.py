@@ -28,7 +28,7 @@ from teachpath.offline.learning_job import (
 from teachpath.offline.planning_job import Signer, find_posture, read_to_plan, sign_planned
 from teachpath.offline.transfer_folders import TransferFolders
 from teachpath.recorder.calibrations import Calibrations
-from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Scene, Task
+from teachpath.records import Demonstration, Job, Learned, LearnedPath, ObjectPose, Plan, Scene, Task, ToolOutput
 from teachpath.robot.object_poses import ObjectPoses
 from teachpath.robot.scenes import Scenes
 
@@ -138,7 +138,9 @@ class JobKinds:
         signer = Signer(self.signing_key, self._calibrations_of(job.task, learned))
         arm, free = self.settings.arm, job.request.get("posture") == "free"
         posture = None if free else find_posture(self.store, job.task, learned, arm)
-        return learned, scene, self.settings.motion, arm, posture, signer
+        given = job.request.get("output")
+        output = from_document(ToolOutput, given) if isinstance(given, dict) else None
+        return learned, scene, self.settings.motion, arm, posture, output, signer
 
     def _calibrations_of(self, task: str, path: LearnedPath) -> CalibrationScope:
         """Return the calibrations, each once, of the demonstrations that a path was learned from."""

@@ -16,8 +16,8 @@ from teachpath.motion.planning.sampled_plan import sample_plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Fit, LearnedPath, Plan, SerialArm
 from tests.bench.report import Figure, against, print_report
-from tests.plan_checker.model_judge import ModelJudge
 from tests.plan_checker.random_cases import random_case
+from tests.plan_checker.refusal_judge import Refusal, RefusalJudge
 
 HEIGHT = 0.5  # [m] of the table, on which the arm stands
 RATE = 250.0  # [Hz]
@@ -29,12 +29,13 @@ def measure(example: str, *, count: int) -> list[Figure]:
     model = read_arm(example, base=((0.0, 0.0, HEIGHT), (1.0, 0.0, 0.0, 0.0)), gripper_length=0.13)
     arm = Arm.of_model(model, MotionSettings())
     _planned(0, arm)
-    judge = ModelJudge(EXAMPLES[example], HEIGHT, arm.tool_length)
+    judge = RefusalJudge(EXAMPLES[example], HEIGHT, arm.tool_length)
     found = [_planned(seed, arm) for seed in range(count)]
     wrong = [seed for seed, (made, _) in enumerate(found) if made and not judge.accepts(made, *random_case(seed), arm)]
     plans = [(made, seconds) for made, seconds in found if made is not None]
     uses = np.max([_largest_use(made, arm, model) for made, _ in plans])
     refused = tuple(took for made, took in found if made is None)
+    refusals = [judge.refuses(*random_case(seed)) for seed, (made, _) in enumerate(found) if made is None]
     return [
         Figure(f"plans accepted of {count} random paths", (float(len(plans)),), "plans"),
         Figure("of them off the path or too near to something, by MuJoCo", (float(len(wrong)),), "plans"),
@@ -47,6 +48,7 @@ def measure(example: str, *, count: int) -> list[Figure]:
             value=ASKED[example],
         ),
         *([Figure("finding that there is no plan, CPU", refused, "s")] if refused else []),
+        *[Figure(f"refused: {kind}, by MuJoCo", (float(refusals.count(kind)),), "paths") for kind in Refusal],
     ]
 
 

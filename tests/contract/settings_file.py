@@ -38,6 +38,7 @@ RARE = ("orientation", "file", "vertices", "mass", "max_pieces", "pieces")  # of
 # A setting without a default shows one that it could have.
 EXAMPLES = {
     "motion.arm": "light",
+    "motion.gripper": "suction",
     "motion.tool_position": (0.05, 0.0, 0.18),
     "motion.tool_orientation": (0.9659258, 0.0, 0.258819, 0.0),
     "motion.tool_speed": 0.25,

@@ -39,21 +39,24 @@ class ModelJudge:
         """Tell whether the tool is on the path and points down, and the links keep away from the scene's shapes."""
         settings, model = MotionSettings(), self._model(scene)
         data, points = mujoco.MjData(model), cKDTree(curve(np.linspace(0.0, 1.0, POINTS)))
-        shapes = [geom for geom in range(model.ngeom) if model.geom(geom).name.startswith("shape ")]
-        links = [
-            geom for geom in range(model.ngeom) if geom not in shapes and model.geom_bodyid[geom] > self._fixed(model)
-        ]
         for number, q in enumerate(sample_plan(made, RATE, arm).positions):
             data.qpos[:] = q
             mujoco.mj_kinematics(model, data)
             place, turn = self._tool(model, data)
             if points.query(place)[0] > settings.path_tolerance or turn[2, 2] > -1.0 + 1e-6:
                 return False
-            pairs = [(link, shape) for link in links for shape in shapes] if number % EVERY == 0 else []
-            near = [mujoco.mj_geomDistance(model, data, *pair, 1.0, None) for pair in pairs]
-            if min(near, default=1.0) < settings.clearance_min - ROUNDING:
+            if number % EVERY == 0 and self._clearance(model, data) < settings.clearance_min - ROUNDING:
                 return False
         return True
+
+    def _clearance(self, model: mujoco.MjModel, data: mujoco.MjData) -> float:
+        """Return the least distance of the moving links to the scene's shapes [m], up to 1."""
+        shapes = [geom for geom in range(model.ngeom) if model.geom(geom).name.startswith("shape ")]
+        links = [
+            geom for geom in range(model.ngeom) if geom not in shapes and model.geom_bodyid[geom] > self._fixed(model)
+        ]
+        pairs = [(link, shape) for link in links for shape in shapes]
+        return min((mujoco.mj_geomDistance(model, data, *pair, 1.0, None) for pair in pairs), default=1.0)
 
     def _model(self, scene: Scene) -> mujoco.MjModel:
         spec = mujoco.MjSpec.from_file(str(self._file))

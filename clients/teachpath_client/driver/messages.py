@@ -19,7 +19,10 @@ JOINT_COUNTS: Final = (6, 7)  # that an arm may have
 
 @dataclass(frozen=True, eq=False)
 class Setpoint:
-    """One control period; joint arrays are (joints,) in rad, rad/s, rad/s^2, `way_to_rest` (n, 3, joints)."""
+    """One control period; joint arrays are (joints,) in rad, rad/s, rad/s^2, `way_to_rest` (n, 3, joints).
+
+    `output` names the output that is on, as long as it is played (see `SetpointPlayer.output`); empty: none.
+    """
 
     cycle: int
     nominal_ns: int
@@ -29,6 +32,7 @@ class Setpoint:
     gripper_closed: bool
     execution: str
     way_to_rest: Array
+    output: str = ""
 
 
 def decode_setpoint(payload: bytes) -> Setpoint:
@@ -49,7 +53,9 @@ def decode_setpoint(payload: bytes) -> Setpoint:
     if not fits or not all(np.isfinite(array).all() for array in (*arrays, way)):
         raise ValueError(f"setpoint {m.cycle} needs {needed_joints(count)} finite numbers a joint array")
     position, velocity, acceleration = arrays
-    return Setpoint(m.cycle, m.nominal_ns, position, velocity, acceleration, m.gripper_closed, m.execution, way)
+    return Setpoint(
+        m.cycle, m.nominal_ns, position, velocity, acceleration, m.gripper_closed, m.execution, way, m.output
+    )
 
 
 def needed_joints(count: int) -> str:
@@ -96,6 +102,7 @@ def joint_state(
         protective_stop=protective_stop,
         fault=fault,
         gripper_opening=gripper_opening,
+        output=player.output,
         gripper_closed=newest.gripper_closed if newest else False,
         object_position=[0.0] * 3,
         object_orientation=[0.0] * 4,

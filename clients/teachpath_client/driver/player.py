@@ -116,6 +116,11 @@ class SetpointPlayer:
         return newest.execution if newest is not None else ""
 
     @property
+    def output(self) -> str:
+        """Name of the output that is on: that of the setpoint played last; empty while none is played."""
+        return _output(self.last_reached) if self.state is PlayerState.PLAYING else ""
+
+    @property
     def at_rest(self) -> bool:
         """Whether nothing waits to be played and the arm is to stand still."""
         return not (self._queue or self.target.velocity.any() or self.target.acceleration.any())
@@ -239,6 +244,7 @@ class SetpointPlayer:
             and _is_still(following)
             and np.array_equal(last.position, following.position)
             and last.gripper_closed == following.gripper_closed
+            and _output(last) == _output(following)
         )
 
     def _wait_at_rest(self) -> None:
@@ -280,6 +286,10 @@ class SetpointPlayer:
             p, v, a = (value + part for value, part in zip((p, v, a), blended(off, since), strict=True))
             self._blend = (off, since + dt)
         self.target = TargetMotion(p, v, a)
+
+
+def _output(setpoint: SetpointLike | None) -> str:
+    return getattr(setpoint, "output", "")  # setpoints of a driver's own may have none
 
 
 def _same_place(one: SetpointLike, two: SetpointLike) -> bool:

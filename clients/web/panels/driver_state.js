@@ -4,7 +4,7 @@ import { patchChildren } from "../patch_children.js";
 import { formatNumber } from "../texts.js";
 
 /** @typedef {import("./live_joints.js").JointState} JointState */
-/** @typedef {Pick<JointState, "enabled" | "protective_stop" | "fault" | "gripper_closed" | "gripper_opening">} DriverState */
+/** @typedef {Pick<JointState, "enabled" | "protective_stop" | "fault" | "gripper_closed" | "gripper_opening" | "output">} DriverState */
 
 /** @param {HTMLElement} place */
 export function driverState(place) {
@@ -14,13 +14,14 @@ export function driverState(place) {
     update(state) {
       const trouble = driverTrouble(state);
       const gripper = gripperText(state);
-      if (shown === trouble + gripper) return;
-      shown = trouble + gripper;
+      if (shown === trouble + gripper + state.output) return;
+      shown = trouble + gripper + state.output;
       patchChildren(place, [
         trouble && element("p", { class: "failed", role: "alert" }, trouble),
         definitionList([
           ["Drives", state.enabled ? "on" : "off"],
           ["Gripper", gripper],
+          state.output && ["Output", `${state.output} is on`],
         ]),
       ]);
     },

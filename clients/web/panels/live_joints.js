@@ -15,6 +15,7 @@ const WINDOW = 15; // [s]
  * @property {number | null} lateness [s]
  * @property {boolean} gripper_closed
  * @property {number | null} gripper_opening [m] measured between the fingers; null where the arm does not measure it
+ * @property {string} output name of the one that is on; "" is none
  * @property {boolean} enabled whether the drives are on
  * @property {boolean} protective_stop whether the arm's own controller has stopped it
  * @property {string} fault of the arm; "" is none

@@ -169,7 +169,7 @@ function content(path, plan, job, newer, readOnly) {
 }
 
 /** @param {Plan} plan */
-function planFacts({ duration, certificate, tool_speed: limit, posture }) {
+function planFacts({ duration, certificate, tool_speed: limit, posture, output }) {
   const { position_use, velocity_use, acceleration_use, jerk_use, torque_use } = certificate;
   const uses = [position_use, velocity_use, acceleration_use, jerk_use, torque_use];
   const toolSpeed = certificate.tool_speed;
@@ -183,6 +183,10 @@ function planFacts({ duration, certificate, tool_speed: limit, posture }) {
       `${formatNumber(toolSpeed.value, 2, "m/s")}, ${toolSpeed.place}${limit ? `; limit ${formatNumber(limit, 2, "m/s")}` : ""}`,
     ],
     ["Posture of the arm", certificate.branch],
+    output && [
+      "Output",
+      `${output.name}, on along the path; rests ${formatNumber(output.start, 1, "s")} before it and ${formatNumber(output.end, 1, "s")} behind it with it on`,
+    ],
     posture && ["Farthest from what the arm showed", `${formatNumber((180 * posture.distance.value) / Math.PI, 1, "°")}, ${posture.distance.place}`],
   ]);
 }

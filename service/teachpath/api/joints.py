@@ -79,6 +79,7 @@ def _document(frame: JointFrame, status: ExecutorStatus | None) -> dict[str, Any
         "holding": state.holding,
         "gripper_closed": state.gripper_closed,
         "gripper_opening": None if state.gripper_opening is None else round(state.gripper_opening, 4),
+        "output": state.output,
         "enabled": state.enabled,
         "protective_stop": state.protective_stop,
         "fault": state.fault,

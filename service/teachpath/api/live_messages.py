@@ -130,6 +130,7 @@ class JointMessage:
         holding: whether the arm follows a way to rest, or has followed it.
         gripper_closed: whether the gripper is told to be closed.
         gripper_opening: measured between the fingers [m]; null where the arm does not measure it.
+        output: name of the output that is on; empty: none.
         enabled: whether the drives are on.
         protective_stop: whether the arm's own controller has stopped it.
         fault: what is wrong with the arm, in words; empty: nothing.
@@ -148,6 +149,7 @@ class JointMessage:
     holding: bool
     gripper_closed: bool
     gripper_opening: float | None
+    output: str
     enabled: bool
     protective_stop: bool
     fault: str

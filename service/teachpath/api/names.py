@@ -11,9 +11,17 @@ from teachpath_proto.keys import NAME, is_name, name_refusal
 
 
 def _checked(tracker: str) -> str:
-    if not is_name(tracker):
-        raise PydanticCustomError("name", "{sentence}", {"sentence": name_refusal("tracker", tracker)})
-    return tracker
+    return _checked_name("tracker", tracker)
+
+
+def _checked_output(output: str) -> str:
+    return _checked_name("tool output", output)
+
+
+def _checked_name(what: str, name: str) -> str:
+    if not is_name(name):
+        raise PydanticCustomError("name", "{sentence}", {"sentence": name_refusal(what, name)})
+    return name
 
 
 def _checked_if_given(tracker: str) -> str:
@@ -22,6 +30,9 @@ def _checked_if_given(tracker: str) -> str:
 
 TrackerName = Annotated[
     str, AfterValidator(_checked), WithJsonSchema({"type": "string", "pattern": f"^{NAME.pattern}$"})
+]
+OutputName = Annotated[
+    str, AfterValidator(_checked_output), WithJsonSchema({"type": "string", "pattern": f"^{NAME.pattern}$"})
 ]
 TrackerNameOrEmpty = Annotated[
     str, AfterValidator(_checked_if_given), WithJsonSchema({"type": "string", "pattern": f"^({NAME.pattern})?$"})

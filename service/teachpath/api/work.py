@@ -10,6 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from teachpath.api.access import TEACH, VIEW, Sender
 from teachpath.api.answers import json_response, located, model_of
+from teachpath.api.names import OutputName
 from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
@@ -20,12 +21,13 @@ from teachpath.io.store.rows import Run
 from teachpath.io.store.store import Store
 from teachpath.learning.clustering.cuts import Dendrogram, dendrogram, recut_members
 from teachpath.records import Job, LearnedPath, PathSummary, Plan, PlanSummary, RunSummary, Subject
+from teachpath.records.motion import MAX_OUTPUT_REST
 
 # The fields that each kind of job takes.
 FIELDS_OF_KIND: Final = {
     "learn": {"kind", "settings", "calibrations"},
     "recut": {"kind", "run", "threshold", "clusters", "calibrations"},
-    "plan": {"kind", "path", "version", "posture"},
+    "plan": {"kind", "path", "version", "posture", "output"},
 }
 
 
@@ -43,6 +45,14 @@ WantedPosture = Annotated[
     Field(description="plan: shown prefers the joints of a demonstration that an arm showed, where there is one"),
 ]
 OfTask = Annotated[str | None, Query(description="name of the task; all unless given")]
+
+
+class WantedOutput(Body):
+    """An output of the arm that is to be on while the tool follows the path."""
+
+    name: OutputName = Field(description="of the output, as the arm's driver knows it")
+    start: float = Field(0.0, ge=0, le=MAX_OUTPUT_REST, description="rest at the start with it on [s]")
+    end: float = Field(0.0, ge=0, le=MAX_OUTPUT_REST, description="rest at the end with it on [s]")
 
 
 class NewJob(Body):
@@ -66,6 +76,7 @@ class NewJob(Body):
         None, ge=1, description="plan: number of its version; without it the newest on its main branch"
     )
     posture: WantedPosture = "shown"
+    output: WantedOutput | None = Field(None, description="plan: output that is on along the path; none unless given")
 
     @model_validator(mode="after")
     def refuse_fields_of_other_kinds(self) -> Self:
@@ -91,6 +102,7 @@ class NewPlan(Body):
         None, ge=1, description="number of the version; without it the newest on the main branch"
     )
     posture: WantedPosture = "shown"
+    output: WantedOutput | None = Field(None, description="output that is on along the path; none unless given")
 
 
 def jobs_router(parts: Parts) -> APIRouter:
@@ -133,7 +145,7 @@ def jobs_router(parts: Parts) -> APIRouter:
             with named_in_body("path"):
                 path = wanted_version(store, new.path, new.version)
                 _of_task(stored.name, store.run(path.run).task, f"path {path.id!r}")
-            order = _planning_order(path, new.posture)
+            order = _planning_order(path, new)
         submitter = submitter_of(request, sender)
         job = jobs.submit(stored.name, new.kind, order, submitter, who=sender.name, idempotency_key=key)
         return accepted(job, response)
@@ -235,9 +247,9 @@ def _add_paths(router: APIRouter, parts: Parts) -> None:
         key: IdempotencyKey = "",
     ) -> Job:
         """Queue the planning of a version of a path; `Location` names the job, its outcome the plan."""
-        new = new or NewPlan()
+        new = new or NewPlan(version=None, output=None)
         stored = wanted_version(store, path, new.version)
-        order = _planning_order(stored, new.posture)
+        order = _planning_order(stored, new)
         task, submitter = store.run(stored.run).task, submitter_of(request, sender)
         job = jobs.submit(task, "plan", order, submitter, who=sender.name, idempotency_key=key)
         return accepted(job, response)
@@ -259,8 +271,10 @@ def accepted(job: Job, response: Response) -> Job:
     return job
 
 
-def _planning_order(path: LearnedPath, posture: str) -> dict[str, Any]:
-    return {"path": path.id, "version": path.version} | ({"posture": posture} if posture != "shown" else {})
+def _planning_order(path: LearnedPath, new: NewJob | NewPlan) -> dict[str, Any]:
+    posture = {"posture": new.posture} if new.posture != "shown" else {}
+    output = {"output": new.output.model_dump()} if new.output else {}
+    return {"path": path.id, "version": path.version} | posture | output
 
 
 def _of_task(task: str, owner: str, what: str) -> None:

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from teachpath.lengths import describe_length
-from teachpath_client.models import Dendrogram, Plan, Posture, Run, Signature
+from teachpath_client.models import Dendrogram, Plan, Posture, Run, Signature, ToolOutput
 
 
 def print_run(run: Run, numbers: dict[str, int], console: Console | None = None) -> None:
@@ -111,7 +111,7 @@ def plan_lines(plan: Plan) -> str:
         f"  largest use of the limits: {', '.join(f'{name} {use.value:.0%}' for name, use in uses.items())}\n"
         f"{speed_line}"
         f"  least clearance {describe_length(c.clearance.value)} ({c.clearance.place})\n"
-        f"{_posture(plan.posture)}"
+        f"{_posture(plan.posture)}{_output(plan.output)}"
         f"  {_scope(c.signature)}"
     )
 
@@ -121,6 +121,14 @@ def _posture(posture: Posture | None) -> str:
         return ""
     away = f"{math.degrees(posture.distance.value):.1f} deg ({posture.distance.place})"
     return f"  at most {away} from the joints shown in demonstration {posture.demonstration}\n"
+
+
+def _output(output: ToolOutput | None) -> str:
+    if output is None:
+        return ""
+    return (
+        f"  {output.name} is on along the path, and for {output.start:g} s before it and {output.end:g} s behind it\n"
+    )
 
 
 def _scope(signature: Signature | None) -> str:

@@ -118,16 +118,21 @@ def plan(
     posture: Annotated[
         Literal["shown", "free"], typer.Option(help="Prefer the joints that an arm showed, where one did; or not.")
     ] = "shown",
+    output: Annotated[str, typer.Option(help="Output of the arm that is on along the path; none unless given.")] = "",
+    output_start: Annotated[float, typer.Option(help="[s] to rest at the start with it on.")] = 0.0,
+    output_end: Annotated[float, typer.Option(help="[s] to rest at the end with it on.")] = 0.0,
     url: Url = "",
     json_: Json = False,
 ) -> None:
     """Certify a learned path, or say why not."""
     from teachpath.commands.tables import plan_lines
+    from teachpath_client.models import ToolOutput
 
+    wanted = ToolOutput(name=output, start=output_start, end=output_end) if output else None
     with connected(url) as station:
         found = find_path(station, path)
         with progress_bar("planning") as show:
-            made = station.plan(found, version, posture=posture, on_change=job_shown(show))
+            made = station.plan(found, version, posture=posture, output=wanted, on_change=job_shown(show))
     print_answer(made, plan_lines(made), json_=json_)
 
 

@@ -239,6 +239,7 @@ class Execution:
             on_path=motion.on_path,
             way_to_rest=way_to_rest,
             from_rest=self._standstill_left == STANDSTILL_SETPOINTS - 1,
+            output=motion.output,
         )
         self._sent_count += 1
         self.state = self._current_state()

@@ -27,7 +27,7 @@ from teachpath.jobs.process_pipe import send
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import Learned, LearnedPath, Plan, Scene, ShownPosture, Trajectory
+from teachpath.records import Learned, LearnedPath, Plan, Scene, ShownPosture, ToolOutput, Trajectory
 
 log: logging.Logger = logging.getLogger("teachpath")
 
@@ -171,11 +171,13 @@ def plan_path(
     settings: MotionSettings,
     arm: Arm,
     shown: ShownPosture | None,
+    output: ToolOutput | None,
     *,
     progress: Progress,
 ) -> Plan:
-    """Plan one path, near to the joints that were shown."""
+    """Plan one path, near to the joints that were shown, with an output that is on along it."""
     from teachpath.motion.planning.plan import plan
 
     progress(0.1, f"planning path {path.id}")
-    return plan(path, scene, settings, arm=arm, plan_id=f"plan-{uuid.uuid4().hex[:12]}", shown=shown)
+    plan_id = f"plan-{uuid.uuid4().hex[:12]}"
+    return plan(path, scene, settings, arm=arm, plan_id=plan_id, shown=shown, output=output)

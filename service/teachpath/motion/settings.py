@@ -26,6 +26,9 @@ class MotionSettings:
     # orientation of the tool in the flange's frame (w, x, y, z): its z points out of the gripper, along y the fingers
     # close; left out = as the flange
     tool_orientation: Annotated[tuple[Annotated[float, Ge(-1), Le(1)], ...], Len(4, 4)] | None = None
+    # what takes the object: `parallel`, two fingers; `suction`, a cup that touches it from above; `none`: the tool
+    # alone follows paths, in scenes without an object, and payload_mass says its mass; left out = parallel
+    gripper: Literal["parallel", "suction", "none"] | None = None
     # [kg] of what the flange carries besides the gripper and the scene's object, e.g. a camera or another tool
     payload_mass: Annotated[float, Ge(0), Le(10)] = 0.0
     # [m] its centre of mass in the flange's frame: z along the axis of joint 6, y as the fingers close

@@ -12,7 +12,7 @@ from teachpath.motion.planning.signature import CalibrationScope, SigningKey, si
 from teachpath.motion.settings import MotionSettings
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.posture import shown_joints
-from teachpath.records import Demonstration, LearnedPath, Plan, Scene, ShownPosture
+from teachpath.records import Demonstration, LearnedPath, Plan, Scene, ShownPosture, ToolOutput
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,21 @@ class Signer:
     calibrations: CalibrationScope
 
 
-PlanOrder = tuple[LearnedPath, Scene, MotionSettings, Arm, ShownPosture | None]
+PlanOrder = tuple[LearnedPath, Scene, MotionSettings, Arm, ShownPosture | None, ToolOutput | None]
 
 
 def read_to_plan(
-    path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm, posture: StoredPosture | None, signer: Signer
+    path: LearnedPath,
+    scene: Scene,
+    settings: MotionSettings,
+    arm: Arm,
+    posture: StoredPosture | None,
+    output: ToolOutput | None,
+    signer: Signer,
 ) -> PlanOrder:
     """Return what a path is planned from; the key stays here."""
     del signer
-    return path, scene, settings, arm, posture and posture.read()
+    return path, scene, settings, arm, None if posture is None else posture.read(), output
 
 
 def sign_planned(
@@ -64,8 +70,9 @@ def sign_planned(
     settings: MotionSettings,
     arm: Arm,
     posture: StoredPosture | None,
+    output: ToolOutput | None,
     signer: Signer,
 ) -> Plan:
     """Sign a plan that was made of these."""
-    del path, scene, posture
+    del path, scene, posture, output
     return sign_plan(made, arm, settings, signer.key, issued_ns=time.time_ns(), calibrations=signer.calibrations)

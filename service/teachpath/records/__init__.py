@@ -56,6 +56,7 @@ from teachpath.records.motion import (
     ShapeKind,
     ShownPosture,
     Signature,
+    ToolOutput,
     ToolPose,
 )
 from teachpath.records.previews import MotionPreview, SegmentInterval
@@ -135,9 +136,9 @@ __all__ = [
     "Person",
     "Phase",
     "Plan",
-    "Posture",
     "PlanSummary",
     "Pose",
+    "Posture",
     "Quaternion",
     "RecordingDigest",
     "RecordingRequest",
@@ -174,6 +175,7 @@ __all__ = [
     "TaskReference",
     "TaughtPoint",
     "TeleopRequest",
+    "ToolOutput",
     "ToolPose",
     "Trajectory",
     "Vector",

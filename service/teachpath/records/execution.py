@@ -12,7 +12,10 @@ from teachpath_proto.control import ExecutorState
 
 @dataclass(frozen=True, eq=False)
 class Setpoint:
-    """What the arm should do in one control period; joint arrays are (joints,) in rad, rad/s, rad/s^2."""
+    """What the arm should do in one control period; joint arrays are (joints,) in rad, rad/s, rad/s^2.
+
+    `output` names the output of the arm that is on; empty: none is.
+    """
 
     cycle: int
     nominal_ns: int
@@ -29,6 +32,7 @@ class Setpoint:
     from_rest: bool = (
         False  # the motion begins anew, where the arm rests: what was sent before was not played to its end
     )
+    output: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +46,7 @@ class JointState:
         protective_stop: whether the arm's own controller has stopped it.
         fault: what is wrong with the arm, in words; empty: nothing.
         gripper_opening: measured between the fingers [m]; None where the arm does not measure it.
+        output: name of the output that is on; empty: none is.
     """
 
     stamp_ns: int
@@ -62,6 +67,7 @@ class JointState:
     protective_stop: bool = False
     fault: str = ""
     gripper_opening: float | None = None
+    output: str = ""
 
     @property
     def inability(self) -> str:

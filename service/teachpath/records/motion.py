@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from teachpath.errors import UnusableInput
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
 from teachpath.records.later_fields import LATER
+from teachpath_proto.keys import is_name, name_refusal
+
+MAX_OUTPUT_REST = 60.0  # [s]
 
 ShapeKind = Literal["box", "cylinder", "sphere", "mesh"]
 
@@ -210,6 +214,31 @@ class ShownPosture:
 
 
 @dataclass(frozen=True, slots=True)
+class ToolOutput:
+    """An output of the arm that is on while the tool follows the path, e.g. of a nozzle, a spray gun or a torch.
+
+    Attributes:
+        name: of the output, as the arm's driver knows it.
+        start: for which the arm rests at the start of the path with it on [s].
+        end: for which the arm rests at the end of the path with it on [s].
+
+    Raises:
+        UnusableInput: the name is none, or it would rest for longer than a minute.
+    """
+
+    name: str
+    start: float = 0.0
+    end: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not is_name(self.name):
+            raise UnusableInput(name_refusal("tool output", self.name))
+        for what, seconds in (("start", self.start), ("end", self.end)):
+            if not 0.0 <= seconds <= MAX_OUTPUT_REST:
+                raise UnusableInput(f"output {self.name}: {what} of {seconds:g} s is outside 0 to {MAX_OUTPUT_REST:g}")
+
+
+@dataclass(frozen=True, slots=True)
 class Posture:
     """How near a plan keeps to the joints that a demonstration showed.
 
@@ -244,6 +273,7 @@ class Plan:
         certificate: the proof that the arm can follow it.
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
         posture: how near it keeps to the joints that were shown; None: no arm showed it, or they were not to count.
+        output: of the arm that is on while the tool follows the path; None: none is.
     """
 
     id: str
@@ -260,3 +290,4 @@ class Plan:
     certificate: Certificate
     tool_speed: float | None = None
     posture: Posture | None = field(default=None, metadata=LATER)
+    output: ToolOutput | None = field(default=None, metadata=LATER)

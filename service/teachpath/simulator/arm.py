@@ -24,7 +24,7 @@ class SimulatedArm:
 
     Attributes:
         gripper_opening: between the fingers [m]: the object's width while they hold it, else all or nothing; None
-            without a gripper.
+            without fingers.
     """
 
     def __init__(self, scene: Scene, arm: Arm, settings: SimulatorSettings, position: Sequence[float]) -> None:
@@ -113,7 +113,8 @@ class SimulatedArm:
         """Grasp the object as it lies between the fingers; return False when the gripper does not take it there."""
         if not self._arm.has_gripper:
             return False
-        self.gripper_opening = 0.0
+        has_fingers = self._arm.gripper == "parallel"
+        self.gripper_opening = 0.0 if has_fingers else None
         if self._object is None:
             return False
         hand, carried = self.data.body(f"link{self._count}"), self.data.body(CARRIED_BODY)
@@ -125,7 +126,8 @@ class SimulatedArm:
         in_gripper = pose if mount is None else np.linalg.inv(mount) @ pose
         if grasp_fault(self._object, in_gripper, self._arm):
             return False
-        self.gripper_opening = grasp_width(self._object, in_gripper)
+        if has_fingers:
+            self.gripper_opening = grasp_width(self._object, in_gripper)
         back, turn = np.empty(4), np.empty(4)
         mujoco.mju_negQuat(back, hand.xquat)
         mujoco.mju_mulQuat(turn, back, carried.xquat)
@@ -143,4 +145,5 @@ class SimulatedArm:
             self.data.eq_active[self._model.equality(GRASP_WELD).id] = False
 
     def _open(self) -> None:
-        self.gripper_opening = 2 * HALF_OPENING if self._arm.has_gripper else None
+        has_fingers = self._arm.has_gripper and self._arm.gripper == "parallel"
+        self.gripper_opening = 2 * HALF_OPENING if has_fingers else None

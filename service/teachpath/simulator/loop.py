@@ -239,6 +239,7 @@ class Simulator:
             holding=holding,
             gripper_closed=self._gripper_closed,
             gripper_opening=self._arm.gripper_opening,
+            output=player.output,
             object_position=position,
             object_orientation=orientation,
             execution=newest.execution if newest is not None else "",

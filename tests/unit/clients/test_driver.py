@@ -31,6 +31,7 @@ class Setpoint:
     gripper_closed: bool = False
     execution: str = "e"
     way_to_rest: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 6)))
+    output: str = ""
 
 
 def path(x: float) -> np.ndarray:

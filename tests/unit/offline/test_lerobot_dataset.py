@@ -51,7 +51,10 @@ def test_every_sample_is_a_frame_with_all_that_was_measured(store: Store, tmp_pa
     for name in ("sequence", "device_ns", "receive_ns", "tracked", "buttons"):
         assert read[name] == [getattr(s, name) for s in true]
     assert [tuple(p) for p in read["tracker.position"]] == [s.position for s in true]
-    if take == "bare":
+    assert ("observation.joints" in read) is (take == "led")
+    if take == "led":
+        assert [tuple(row) for row in read["observation.joints"]] == [s.joints for s in true]
+    if take in ("bare", "led"):
         assert "tracker.orientation" not in read
         assert "observation.flexions" not in read
     else:

@@ -16,6 +16,7 @@ from teachpath_proto.control import ExecutorState
 JOINT_COUNTS: Final = (6, 7)  # that an arm may have
 _WAY_FIELDS: Final = ("way_to_rest", "way_to_rest_velocity", "way_to_rest_acceleration")
 MAX_STATE_SIZE: Final = 16_384  # bytes
+MAX_OUTPUT_LENGTH: Final = 64  # characters of the name of an output
 MAX_FAULT_LENGTH: Final = 300  # characters of a fault, which everybody is shown
 
 
@@ -32,6 +33,7 @@ def encode_setpoint(setpoint: Setpoint) -> bytes:
         execution=setpoint.execution,
         on_path=setpoint.on_path,
         from_rest=setpoint.from_rest,
+        output=setpoint.output,
         **dict(zip(_WAY_FIELDS, (_packed(rows) for rows in np.moveaxis(setpoint.way_to_rest, 1, 0)), strict=True)),
     ).SerializeToString()
 
@@ -52,6 +54,7 @@ def decode_setpoint(payload: bytes) -> Setpoint:
         on_path=m.on_path,
         way_to_rest=_way(m, count, where),
         from_rest=m.from_rest,
+        output=m.output,
     )
 
 
@@ -88,6 +91,7 @@ def encode_state(state: JointState) -> bytes:
         protective_stop=state.protective_stop,
         fault=state.fault,
         gripper_opening=state.gripper_opening,
+        output=state.output,
     ).SerializeToString()
 
 
@@ -120,6 +124,7 @@ def decode_state(payload: bytes) -> JointState:
         protective_stop=m.protective_stop,
         fault="".join(filter(str.isprintable, m.fault))[:MAX_FAULT_LENGTH],
         gripper_opening=m.gripper_opening if m.HasField("gripper_opening") else None,
+        output="".join(filter(str.isprintable, m.output))[:MAX_OUTPUT_LENGTH],
     )
 
 

@@ -116,7 +116,7 @@ def describe_arm(arm: Arm, *, name: str, home: tuple[float, ...]) -> Robot:
         torque=limits.torque,
         tool=_tool(arm),
         tool_length=arm.tool_length,
-        finger_travel=FINGER_TRAVEL if arm.has_gripper else 0.0,
+        finger_travel=FINGER_TRAVEL if arm.has_gripper and arm.gripper == "parallel" else 0.0,
         home=home,
         tool_speed=arm.tool_speed,
         payload_mass=arm.payload.mass,

@@ -26,6 +26,10 @@ PLATE_COLOR: Final = 0x1F4E87
 
 FINGER_END: Final = 0.135  # [m] from the flange
 ROD_RADIUS: Final = 0.011  # [m]
+CUP_RADIUS: Final = 0.015  # [m] of a suction cup, whose lip is at the tool centre point
+CUP_HEIGHT: Final = 0.015  # [m]
+PALM_HEIGHT: Final = 0.035  # [m]
+CUP: Final = "suction cup"  # its name
 ADAPTER_RADIUS: Final = 0.02  # [m] of what holds a gripper that does not sit on the flange
 MIN_ADAPTER: Final = 0.001  # [m] between flange and gripper, below which there is none
 
@@ -89,7 +93,7 @@ def visual_solids(arm: Arm | None = None) -> tuple[LinkSolid, ...]:
     if arm is not None and arm.model is not None:
         rods = [solid for one in connectors(arm) for solid in _rods(one)]
         return (*_model_solids(arm.model), *rods, *gripper_solids(arm))
-    gripper = _GRIPPER if arm is None else _gripper(arm.tool_length)
+    gripper = _GRIPPER if arm is None else _tool_solids(arm)
     if arm is None or arm.tool is None or arm.gripper_mount is None:
         return _ARM + gripper
     mount, turn = arm.gripper_mount, arm.tool.orientation
@@ -100,7 +104,7 @@ def gripper_solids(arm: Arm) -> tuple[LinkSolid, ...]:
     """Return the solids of the gripper on the last link of a user's model; none where it has no gripper."""
     if arm.model is None or arm.gripper_mount is None:
         return ()
-    mounted = (_mounted(solid, arm.gripper_mount, arm.model.tool[1]) for solid in _gripper(arm.tool_length))
+    mounted = (_mounted(solid, arm.gripper_mount, arm.model.tool[1]) for solid in _tool_solids(arm))
     return tuple(replace(solid, link=len(arm.model.links)) for solid in mounted)
 
 
@@ -111,12 +115,33 @@ def may_meet(a: LinkSolid, b: LinkSolid, arm: Arm) -> bool:
     return at_wrist or (low != high and (low, high) not in _IGNORED_LINK_PAIRS)
 
 
-def _gripper(tool_length: float) -> tuple[LinkSolid, ...]:
-    """Return the gripper as it sits on the flange, with what reaches beyond its fingers."""
+def grips(solid: LinkSolid) -> bool:
+    """Tell whether a solid is a finger or a suction cup, which touches the object that it takes."""
+    return any(solid.opening_offset) or solid.name == CUP
+
+
+def _tool_solids(arm: Arm) -> tuple[LinkSolid, ...]:
+    """Return the gripper as it sits on the flange, or the rod that holds a tool centre point without one."""
+    if arm.gripper == "parallel":
+        return _fingers(arm.tool_length)
+    if arm.gripper == "none":
+        return (_stem("tool", 0.0, arm.tool_length),)
+    palm = LinkSolid("palm", 6, "box", (0.044, 0.044, PALM_HEIGHT), (0.0, 0.0, PALM_HEIGHT / 2), color=JOINT_COLOR)
+    begin = arm.tool_length - CUP_HEIGHT
+    cup = replace(_stem(CUP, begin, arm.tool_length), size=(CUP_RADIUS, CUP_HEIGHT), color=JOINT_COLOR)
+    return (palm, *([_stem("tool", PALM_HEIGHT, begin)] if begin > PALM_HEIGHT else []), cup)
+
+
+def _stem(name: str, begin: float, end: float) -> LinkSolid:
+    """Return a rod along z of the gripper's frame, between two heights [m]."""
+    return LinkSolid(name, 6, "cylinder", (ROD_RADIUS, end - begin), (0.0, 0.0, (begin + end) / 2), color=STEEL_COLOR)
+
+
+def _fingers(tool_length: float) -> tuple[LinkSolid, ...]:
+    """Return the gripper with fingers as it sits on the flange, with what reaches beyond them."""
     if (beyond := tool_length - FINGER_END) <= 0.0:
         return _GRIPPER
-    place = (0.0, 0.0, FINGER_END + beyond / 2)
-    return (*_GRIPPER, LinkSolid("tool", 6, "cylinder", (ROD_RADIUS, beyond), place, color=STEEL_COLOR))
+    return (*_GRIPPER, _stem("tool", FINGER_END, FINGER_END + beyond))
 
 
 def _model_solids(model: SerialArm) -> tuple[LinkSolid, ...]:

@@ -121,6 +121,8 @@ def _arm(arm: Arm, held: str) -> list[str]:
 
 
 def _gripper(arm: Arm) -> list[str]:
+    if arm.gripper == "none":
+        return []  # what the flange carries is its payload alone
     return [
         f'<body name="gripper"{_mount(arm)}>',
         f'<inertial pos="{numbers(GRIPPER_COM)}" mass="{GRIPPER_MASS}" diaginertia="{numbers(GRIPPER_INERTIA)}"/>',

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from teachpath.motion.arm.tool import tool_matrix, tool_of_settings
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import SerialArm, ToolPose
 from teachpath.records.later_fields import LATER
+
+GripperKind = Literal["parallel", "suction", "none"]
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,7 @@ class Arm:
         tool_speed: that elbow, wrist and tool centre point keep [m/s] (see `tool_speed`); None: no limit.
         tool: pose of the tool to the flange; None: the gripper sits on the flange, along the axis of joint 6.
         model: that describes an arm other than the Puma 560; None: the Puma 560.
+        gripper: what takes an object: two fingers, a suction cup, or nothing.
     """
 
     name: str
@@ -53,6 +57,7 @@ class Arm:
     tool_speed: float | None = None
     tool: ToolPose | None = field(default=None, metadata=LATER)
     model: SerialArm | None = field(default=None, metadata=LATER)
+    gripper: GripperKind = field(default="parallel", metadata=LATER)
 
     @classmethod
     def of_settings(cls, settings: MotionSettings) -> Arm:
@@ -74,6 +79,7 @@ class Arm:
             payload=Payload(mass, tuple(settings.payload_center)) if mass else Payload(),  # nothing is nowhere
             tool_speed=settings.tool_speed,
             tool=tool_of_settings(settings),
+            gripper=settings.gripper or "parallel",
         )
 
     @classmethod
@@ -89,7 +95,15 @@ class Arm:
 
     @classmethod
     def of_model(cls, model: SerialArm, settings: MotionSettings) -> Arm:
-        """Return the arm that a user's model describes; of the settings it has grasp depth and limit of speed."""
+        """Return the arm that a user's model describes; of the settings it has gripper, grasp depth and limit of speed.
+
+        Raises:
+            UnusableSettings: the arm was added with a gripper, and the settings say that it has none.
+        """
+        if settings.gripper == "none" and model.gripper_length:
+            raise UnusableSettings(
+                f"setting motion.gripper is none, and {model.name} was added with a gripper; add it without --gripper"
+            )
         return cls(
             model.name,
             (),
@@ -98,6 +112,7 @@ class Arm:
             payload=Payload(model.payload_mass, model.payload_center),
             tool_speed=settings.tool_speed,
             model=model,
+            gripper=settings.gripper or "parallel",
         )
 
     @property
@@ -112,8 +127,8 @@ class Arm:
 
     @property
     def has_gripper(self) -> bool:
-        """Whether it has fingers that take an object."""
-        return self.model is None or self.model.gripper_length > 0.0
+        """Whether it has fingers or a cup that take an object."""
+        return self.gripper != "none" and (self.model is None or self.model.gripper_length > 0.0)
 
     @cached_property
     def limits(self) -> JointLimits:

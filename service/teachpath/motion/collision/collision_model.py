@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from teachpath.errors import UnusableInput
 from teachpath.lengths import describe_lengths
 from teachpath.motion.arm.convex_pieces import convex_shapes, whole_name
-from teachpath.motion.arm.geometry import collision_solids
+from teachpath.motion.arm.geometry import collision_solids, grips
 from teachpath.motion.arm.kinematics import link_frames, tool_pose
 from teachpath.motion.arm.mjcf import CARRIED_BODY, write_mjcf
 from teachpath.motion.arm.model import Arm
@@ -119,8 +119,8 @@ class CollisionModel:
         return self._clearances(q, self._supports(), load, False)
 
     def finger_distances(self, q: Array, load: Load) -> list[Clearance]:
-        """Measure the distance (n rows) of the open fingers to the object that stands between them."""
-        fingers = [geom for geom, part in self._solids.items() if any(part.opening_offset)]
+        """Measure the distance (n rows) of the open fingers, or the suction cup, to the object that stands there."""
+        fingers = [geom for geom, part in self._solids.items() if grips(part)]
         return self._clearances(q, _Pairs([(finger, self._object) for finger in fingers]), load, True)
 
     def lever_arms(self, load: Load | None = None) -> Array:
@@ -171,9 +171,7 @@ class CollisionModel:
             pairs.boundaries.extend(pair for pair in sides if pair not in supports.boundaries)
         elif load is not None:
             pairs.bodies.extend(
-                (geom, self._object)
-                for geom, part in self._solids.items()
-                if part.link >= 2 and not any(part.opening_offset)
+                (geom, self._object) for geom, part in self._solids.items() if part.link >= 2 and not grips(part)
             )
         return pairs
 

@@ -3,7 +3,7 @@
 The object is measured by its extents along the fingers' axes: across their width (x), where they close (y) and along
 their length (z), in the frame of the gripper. It must fit between the open fingers, and the fingers must overlap it
 along z and x by `Arm.grasp_depth`, or all of it where it is smaller. A round object touches each finger along a line or
-at a point, which must lie on the finger.
+at a point, which must lie on the finger. A suction cup has a rule of its own (`suction.py`).
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from teachpath.lengths import describe_length, describe_lengths
 from teachpath.motion.arm.geometry import collision_solids
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
+from teachpath.motion.arm.rotations import rotation_matrices
 from teachpath.motion.collision.boundaries import Extent
-from teachpath.records import Shape
+from teachpath.motion.collision.suction import suction_fault
+from teachpath.records import Scene, Shape
 
 PLANNED_MARGIN: Final = 0.001  # m, by which a plan does more than the rule asks for: an arm is not exactly on its path
 ROUND_AXIS_SHARE: Final = 0.7  # of a cylinder's axis along a finger's axis, above which it counts as along it
@@ -30,7 +32,7 @@ _HIGH: Final = np.array(_FINGER.position) + np.array(_FINGER.size) / 2
 
 
 def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> str:
-    """Return why closing fingers do not take an object, in words; empty when they take it.
+    """Return why closing fingers, or a suction cup, do not take an object, in words; empty when they take it.
 
     Args:
         shape: of the object.
@@ -38,6 +40,8 @@ def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> 
         arm: whose gripper closes.
         margin: by which the rule must be exceeded [m].
     """
+    if arm.gripper == "suction":
+        return suction_fault(shape, pose, arm, margin=margin)
     centre = pose[:3, 3]
     low, high = _bounds(shape, pose)
     room = HALF_OPENING - margin
@@ -59,6 +63,14 @@ def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> 
             if beyond > 0:
                 return f"the fingers end {describe_length(beyond)} before the middle of {shape.name} {where}"
     return ""
+
+
+def tool_offset_of(scene: Scene, arm: Arm) -> float:
+    """Return how far the tool stays above the middle of a scene's object [m]: a suction cup touches its top."""
+    if scene.carried is None or arm.gripper != "suction":
+        return 0.0
+    turned = rotation_matrices(np.array([scene.carried.orientation]))[0]
+    return float(shape_extent(scene.carried).along(turned)[2])
 
 
 def grasp_width(shape: Shape, pose: Array) -> float:

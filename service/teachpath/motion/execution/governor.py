@@ -91,6 +91,11 @@ class Governor:
         return self._held or self._override < MIN_OVERRIDE
 
     @property
+    def goes_forward(self) -> bool:
+        """Whether it moves towards its end, or is there."""
+        return not self._reversing and (not self.progress.at_rest or self.progress.finished)
+
+    @property
     def reversing(self) -> bool:
         """Whether `reverse` was called and not taken back."""
         return self._reversing

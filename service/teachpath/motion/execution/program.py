@@ -55,9 +55,7 @@ class PlanProgram:
         period: float = 0.004,
     ) -> None:
         verify(plan, arm)
-        self._plan = plan
-        self._settings = settings
-        self._arm = arm
+        self._plan, self._settings, self._arm = plan, settings, arm
         self._segments = plan_segments(plan, start_q, settings, arm, dwell)
         self._next = 0  # index of the segment behind the present one
         self._length = float(plan.lengths[-1])
@@ -212,6 +210,7 @@ class PlanProgram:
             return self.state
         if governor is None:
             self._elapsed += 0.0 if self.held or self.waiting else self._period
+            self.state = replace(self.state, output="" if self.held or self.waiting else segment.output)
             if self._elapsed >= segment.rest_time:
                 self._advance()
             return self.state
@@ -220,8 +219,9 @@ class PlanProgram:
         if on_path:
             # The table of the whole path ends a last bit away from its length; that of a step ends where the step does.
             self.arc_length = self._length if state.finished and self._detour is None else state.s
+        output = segment.output if on_path and self._detour is None and governor.goes_forward else ""
         position, velocity, acceleration = governor.motion[:, :-1].copy()
-        self.state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path)
+        self.state = MotionState(position, velocity, acceleration, segment.gripper_closed, on_path, output)
         if state.finished and not self.held:
             self._finish()
         return self.state
@@ -254,7 +254,7 @@ class PlanProgram:
         if self._governor is not None:
             self._governor = governors.pop()
         self._detour_governors = governors
-        self.state = replace(self.state, position=point.position, on_path=point.on_path)
+        self.state = replace(self.state, position=point.position, on_path=point.on_path, output="")
         if point.on_path and (active := self._active_governor) is not None:
             self.arc_length = float(active.motion[0, -1])
         if steps and governors and governors[0].progress.finished:
@@ -293,7 +293,7 @@ class PlanProgram:
         self._elapsed, self._governor = 0.0, None
         if self._segment is None:
             return
-        self.state = MotionState(q := self.state.position, 0.0 * q, 0.0 * q, self._segment.gripper_closed)
+        self.state = self._segment.begin(self.state)
         if self._segment.trajectory is not None:
             self._governor = self._governor_of(self._segment.trajectory)
             if self._held:

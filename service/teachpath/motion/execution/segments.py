@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -26,13 +26,17 @@ MIN_MOVE: Final = 1e-9  # [rad] below which there is nothing to move
 
 @dataclass(frozen=True, eq=False)
 class MotionState:
-    """The arm's nominal motion at one instant: (joints,) in rad, rad/s, rad/s^2."""
+    """The arm's nominal motion at one instant: (joints,) in rad, rad/s, rad/s^2.
+
+    `output` names the output that is on; empty: none is.
+    """
 
     position: Array
     velocity: Array
     acceleration: Array
     gripper_closed: bool
     on_path: bool = False
+    output: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +106,7 @@ class Segment:
         is_path: whether it follows the learned path.
         gripper_closed: whether the gripper is closed while it lasts.
         rest_time: duration of a rest [s].
+        output: name of the output that is on while it goes forward; empty: none.
     """
 
     name: str
@@ -110,6 +115,15 @@ class Segment:
     trajectory: TimedTrajectory | None = None
     rest_time: float = 0.0
     is_path: bool = False
+    output: str = ""
+
+    def begin(self, before: MotionState) -> MotionState:
+        """Return the state at rest where the segment before has ended.
+
+        An output that is on in both goes on without a gap; another one is switched on by the segment's first period.
+        """
+        q, output = before.position, before.output if before.output == self.output else ""
+        return MotionState(q, 0.0 * q, 0.0 * q, self.gripper_closed, output=output)
 
 
 def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm, dwell: float) -> list[Segment]:
@@ -133,11 +147,19 @@ def plan_segments(plan: Plan, start_q: Array, settings: MotionSettings, arm: Arm
             return []
         return [Segment(name, before, closed, move_within_torques(a, b, limits, dynamics, arm, name))]
 
+    on = plan.output.name if plan.output else ""
+
+    def waits(end: Literal["start", "end"], *, before: bool) -> list[Segment]:
+        seconds = getattr(plan.output, end) if plan.output else 0.0
+        return [Segment(f"resting with {on} on", before, True, rest_time=seconds, output=on)] if seconds else []
+
     return [
         *[piece for a, b in pairwise(stops) for piece in move("on the approach", a, b, before=True)],
         *move("on the way down", plan.above_start, start, before=True),
         Segment("closing the gripper", True, True, rest_time=dwell if carries else 0.0),
-        Segment("on the path", False, True, plan_trajectory(plan), is_path=True),
+        *waits("start", before=True),
+        Segment("on the path", False, True, plan_trajectory(plan), is_path=True, output=on),
+        *waits("end", before=False),
         Segment("opening the gripper", False, closed, rest_time=dwell if carries else 0.0),
         *move("on the way up", goal, plan.above_goal, before=False),
         *move("on the way home", *leave, before=False),

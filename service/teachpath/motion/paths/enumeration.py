@@ -66,7 +66,8 @@ def _numeric_candidates(
     ways = [rolled_poses(poses, roll(path.parameters), arm) for roll in rolls]
     found = list[Candidate]()
     for number, sheet in enumerate(find_sheets(ways, model) if arm.joint_count > POSE_COUNT else ()):
-        costs = np.minimum(sheet.costs(arm, settings, path.posture), UNREACHED)  # where none is free, one that is blocked least
+        # where none is free, one that is blocked least
+        costs = np.minimum(sheet.costs(arm, settings, path.posture), UNREACHED)
         if (sequence := sheet.cheapest(costs)) is not None:
             found.append(redundant_candidate(path, arm, model, number, sheet, sequence, rolls[sheet.way]))
     if found:

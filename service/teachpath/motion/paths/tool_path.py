@@ -70,6 +70,7 @@ class ToolPath:
         parameters: (n,) of the curve at the nodes.
         positions: (n, 3) [m], world.
         posture: (n, joints) at the nodes that a plan prefers [rad]; None: any.
+        tool_offset: by which the tool stays behind the curve, along its own z [m].
     """
 
     curve: Curve
@@ -79,6 +80,7 @@ class ToolPath:
     parameters: Array
     positions: Array
     posture: Array | None = None
+    tool_offset: float = 0.0
 
     @staticmethod
     def at_even_lengths(curve: Curve, orientation: Curve | None, arc: ArcLength, count: int) -> ToolPath:
@@ -102,6 +104,7 @@ class ToolPath:
             turned = rotation_matrices(unit_quaternions(self.orientation, u))
             start = rotation_matrices(unit_quaternions(self.orientation, np.zeros(1)))[0]
             poses[:, :3, :3] = turned @ start.T @ poses[:, :3, :3]
+        poses[:, :3, 3] -= self.tool_offset * poses[:, :3, 2]
         return poses
 
     def describe_node(self, index: int) -> str:
@@ -115,13 +118,16 @@ class ToolPath:
         return f"control point {int(np.argmax(shares)) + 1} of {len(shares)}"
 
 
-def sample_tool_path(curve: Curve, settings: MotionSettings, *, orientation: Curve | None = None) -> ToolPath:
+def sample_tool_path(
+    curve: Curve, settings: MotionSettings, *, orientation: Curve | None = None, tool_offset: float = 0.0
+) -> ToolPath:
     """Sample a curve at even arc lengths, as densely as its sharpest bend requires.
 
     Args:
         curve: positions [m].
         settings: spacing of the nodes, and tolerance.
         orientation: quaternions of what is carried, at the same parameter; used where the settings ask for it.
+        tool_offset: by which the tool stays behind the curve, along its own z [m].
 
     Raises:
         PathRefused: the curve is not in 3 dimensions, is too short, or has a cusp.
@@ -135,7 +141,7 @@ def sample_tool_path(curve: Curve, settings: MotionSettings, *, orientation: Cur
             break
         count *= 2
         found = ToolPath.at_even_lengths(curve, orientation, arc, count)
-    return found
+    return replace(found, tool_offset=tool_offset)
 
 
 def control_point_weights(curve: Curve, u: float) -> Array:

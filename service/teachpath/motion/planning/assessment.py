@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from teachpath.lengths import describe_length
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, grasped_load
+from teachpath.motion.collision.grasp import tool_offset_of
 from teachpath.motion.paths.enumeration import enumerate_candidates
 from teachpath.motion.paths.ik_branches import Candidate, nearest_to_usable, node_faults
 from teachpath.motion.paths.tool_path import ToolPath, sample_tool_path
@@ -71,7 +72,8 @@ def assess(
     arm = arm or Arm.of_settings(settings)
     check_plannable(arm, scene)
     settings = with_home(settings, arm)
-    tool_path = sample_tool_path(curve, settings, orientation=orientation)
+    offset = tool_offset_of(scene, arm)
+    tool_path = sample_tool_path(curve, settings, orientation=orientation, tool_offset=offset)
     inspection = _inspect(tool_path, CollisionModel(scene, arm), settings)
     nodes, candidate, failure = inspection.nodes, inspection.candidate, inspection.failure
     limits = arm.limits.motion.scaled(*[settings.path_share] * 3)

@@ -20,6 +20,11 @@ def digest(plan: Plan, arm: Arm) -> str:
     return hashlib.sha256(canonical([replace(plan, id="", certificate=measured), arm])).hexdigest()
 
 
+def with_digest(plan: Plan, arm: Arm) -> Plan:
+    """Return a plan whose certificate has the digest of all that it says."""
+    return replace(plan, certificate=replace(plan.certificate, digest=digest(plan, arm)))
+
+
 def verify(plan: Plan, arm: Arm) -> None:
     """Check that a plan is the one that was certified, for this arm.
 

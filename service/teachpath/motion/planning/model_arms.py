@@ -10,26 +10,27 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.records import Scene, ShownPosture
 
 
-def check_plannable(arm: Arm, scene: Scene) -> None:
-    """Check that plans are made for an arm in a scene.
+def check_plannable(arm: Arm, scene: Scene, shown: ShownPosture | None = None) -> None:
+    """Check that plans are made for an arm in a scene, near to the joints that were shown.
 
     Raises:
-        UnusableInput: there is an object to carry, and a user's model has no gripper to take it.
+        UnusableInput: there is an object to carry, and no gripper to take it; or the joints are another arm's.
     """
+    if shown is not None and (count := shown.joints.shape[1]) != arm.joint_count:
+        raise UnusableInput(
+            f"demonstration {shown.demonstration} was shown by an arm of {count} joints, and {arm.name} has "
+            f"{arm.joint_count}: its posture cannot be preferred"
+        )
+    if arm.model is None and scene.carried is not None and not arm.has_gripper:
+        raise UnusableInput(
+            f"motion.gripper is none, and scene {scene.name} has {scene.carried.name} to carry; plan in a scene "
+            "without an object, where the tool follows the path, or set motion.gripper to parallel or suction"
+        )
     if arm.model is not None and scene.carried is not None and not arm.has_gripper:
         raise UnusableInput(
             f"{arm.name} has no gripper that is known here, and scene {scene.name} has {scene.carried.name} to carry; "
             "plan in a scene without an object, where its tool follows the path, or mount teachpath's own gripper "
             "(teachpath arm add --gripper)"
-        )
-
-
-def check_shown(shown: ShownPosture, arm: Arm) -> None:
-    """Check that the joints that were shown may be an arm's; raises UnusableInput."""
-    if (count := shown.joints.shape[1]) != arm.joint_count:
-        raise UnusableInput(
-            f"demonstration {shown.demonstration} was shown by an arm of {count} joints, and {arm.name} has "
-            f"{arm.joint_count}: its posture cannot be preferred"
         )
 
 

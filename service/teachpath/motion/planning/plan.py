@@ -10,6 +10,7 @@ from teachpath.motion.arm.dynamics import Dynamics
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.mounting import check_mounting
 from teachpath.motion.collision.collision_model import CollisionModel, grasped_load
+from teachpath.motion.collision.grasp import tool_offset_of
 from teachpath.motion.paths.enumeration import enumerate_candidates
 from teachpath.motion.paths.ik_branches import Candidate
 from teachpath.motion.paths.posture import distance_from_shown, toward_shown
@@ -18,14 +19,14 @@ from teachpath.motion.planning.approach import find_approach, find_retreat
 from teachpath.motion.planning.candidates import clear_candidates, usable_candidates
 from teachpath.motion.planning.certificate import certify
 from teachpath.motion.planning.clearance import path_clearance
-from teachpath.motion.planning.digest import digest
+from teachpath.motion.planning.digest import with_digest
 from teachpath.motion.planning.failure import no_candidate
-from teachpath.motion.planning.model_arms import check_home, check_plannable, check_shown, with_home
+from teachpath.motion.planning.model_arms import check_home, check_plannable, with_home
 from teachpath.motion.planning.start_grasp import check_start, grasping_candidates
 from teachpath.motion.planning.torque_limited import time_within_torques
 from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
-from teachpath.records import LearnedPath, Plan, Scene, ShownPosture
+from teachpath.records import LearnedPath, Plan, Scene, ShownPosture, ToolOutput
 
 
 def plan(
@@ -36,11 +37,13 @@ def plan(
     arm: Arm | None = None,
     plan_id: str = "plan",
     shown: ShownPosture | None = None,
+    output: ToolOutput | None = None,
 ) -> Plan:
     """Plan the pick and place along a path: the centre of the carried object follows it.
 
     The arm goes from its home to above the start (or nearer, or beside it), down, closes the gripper, follows the path,
-    opens the gripper, goes up and home. Without a carried object it follows the path with the gripper closed.
+    opens the gripper, goes up and home. Without a carried object the tool centre point follows it, the gripper closed.
+    A suction cup stays above the object, and goes with it.
 
     Args:
         path: what to follow.
@@ -50,6 +53,7 @@ def plan(
         plan_id: of the plan that is made.
         shown: joints of this arm that are preferred, where one showed the path: of all ways to follow it the nearest to
             these is taken that can be certified.
+        output: of the arm that is to be on while the tool follows the path; None: none.
 
     Returns:
         A plan with its certificate.
@@ -62,25 +66,23 @@ def plan(
     """
     settings = settings or MotionSettings()
     arm = arm or Arm.of_settings(settings)
-    check_plannable(arm, scene)
+    ways = (None,) if shown is None else (shown, None)
+    made = first_accepted(ways, lambda preferred: _plan_near(preferred, path, scene, settings, arm))
+    posture = None if shown is None else distance_from_shown(made.lengths, made.joints, shown, arm.limits.names)
+    return with_digest(replace(made, id=plan_id, posture=posture, output=output), arm)
+
+
+def _plan_near(shown: ShownPosture | None, path: LearnedPath, scene: Scene, settings: MotionSettings, arm: Arm) -> Plan:
+    """Plan a path, near to the joints that were shown where there are any; its certificate has no digest yet."""
+    check_plannable(arm, scene, shown)
     settings = with_home(settings, arm)
     check_home(settings, arm)
     check_mounting(arm)
-    tool_path = sample_tool_path(path.curve, settings, orientation=path.orientation)
+    offset = tool_offset_of(scene, arm)
+    tool_path = sample_tool_path(path.curve, settings, orientation=path.orientation, tool_offset=offset)
+    tool_path = tool_path if shown is None else toward_shown(tool_path, shown)
     check_start(tool_path, scene, arm, settings)
     model = CollisionModel(scene, arm)
-    if shown is None:
-        return replace(_plan_along(path, tool_path, model, settings), id=plan_id)
-    check_shown(shown, arm)
-    ways = [toward_shown(tool_path, shown), tool_path]
-    made = first_accepted(ways, lambda way: _plan_along(path, way, model, settings))
-    posture = distance_from_shown(tool_path, made.joints, shown, arm.limits.names)
-    return certified_anew(replace(made, id=plan_id, posture=posture), arm)
-
-
-def _plan_along(path: LearnedPath, tool_path: ToolPath, model: CollisionModel, settings: MotionSettings) -> Plan:
-    """Plan along a tool path, near to the joints that it prefers; raises PathRefused."""
-    scene, arm = model.scene, model.arm
     candidates = grasping_candidates(tool_path, enumerate_candidates(tool_path, arm, settings), scene)
     usable = usable_candidates(candidates, settings, tool_path.posture)
     clear = clear_candidates(tool_path, usable, model, settings)
@@ -100,7 +102,7 @@ def _certified_plan(
     start, goal = timed.joints.joints[0], timed.joints.joints[-1]
     above_start = find_approach(model, start, settings)
     above_goal = find_retreat(model, start, goal, settings)
-    unsigned = Plan(
+    return Plan(
         id="",
         path=path.id,
         path_version=path.version,
@@ -115,9 +117,3 @@ def _certified_plan(
         duration=timed.trajectory.duration,
         certificate=certify(tool_path, candidate, timed, clearance, settings),
     )
-    return certified_anew(unsigned, model.arm)
-
-
-def certified_anew(made: Plan, arm: Arm) -> Plan:
-    """Return a plan with the digest of all that it says."""
-    return replace(made, certificate=replace(made.certificate, digest=digest(made, arm)))

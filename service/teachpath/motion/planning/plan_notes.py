@@ -8,7 +8,7 @@ from teachpath.lengths import describe_length
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.object_mass import object_mass
 from teachpath.motion.arm.tool import describe_tool
-from teachpath.records import Array, Certificate, Plan, Posture, Signature
+from teachpath.records import Array, Certificate, Plan, Posture, Signature, ToolOutput
 
 
 def plan_notes(plan: Plan, arm: Arm) -> tuple[str, ...]:
@@ -25,6 +25,7 @@ def plan_notes(plan: Plan, arm: Arm) -> tuple[str, ...]:
         f"{_listed(plan.limits[2])} rad/s^3.",
         _proved(plan, plan.certificate),
         *([_near_shown(plan.posture)] if plan.posture else []),
+        *([_output(plan.output)] if plan.output else []),
         *([_scope(plan.certificate.signature)] if plan.certificate.signature else []),
         "Not covered: another arm, tool, payload or scene; the way to the first point; what a controller does between "
         "the points, as blending, filters and overrides; a tool or object held in another place.",
@@ -71,6 +72,13 @@ def _proved(plan: Plan, certificate: Certificate) -> str:
 def _near_shown(posture: Posture) -> str:
     away = f"{np.degrees(posture.distance.value):.1f} deg ({posture.distance.place})"
     return f"It keeps within {away} of the joints that demonstration {posture.demonstration} showed."
+
+
+def _output(output: ToolOutput) -> str:
+    return (
+        f"Output {output.name} is to be on along the path, with {output.start:g} s of rest before it and "
+        f"{output.end:g} s behind it; it is not in this file: switch it in your program."
+    )
 
 
 def _scope(signature: Signature) -> str:

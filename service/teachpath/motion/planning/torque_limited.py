@@ -119,7 +119,7 @@ def _load_hint(arm: Arm, dynamics: Dynamics) -> str:
 def _check_tolerance(tool_path: ToolPath, joints: JointPath, arm: Arm, settings: MotionSettings) -> None:
     """Check that the tool stays within the path's tolerance between the nodes of the joints' spline."""
     reached = joints(joints.dense_parameters())
-    wanted = tool_path.curve(tool_path.arc.parameters(reached[:, -1]))
+    wanted = tool_path.poses(tool_path.arc.parameters(reached[:, -1]))[:, :3, 3]
     off = np.linalg.norm(tool_pose(reached[:, :-1], arm)[:, :3, 3] - wanted, axis=1)
     worst = int(np.argmax(off))
     if off[worst] > settings.path_tolerance:

@@ -17,6 +17,7 @@ from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.arm.tool_speed import line_speed_bound
 from teachpath.motion.collision.collision_model import Clearance, CollisionModel, Load, shape_pose
 from teachpath.motion.collision.continuous import ContinuousCheck, prove_distance
+from teachpath.motion.collision.suction import CUP_REACH
 from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.timed_trajectory import MAX_TABLE_STEP, TimedTrajectory, apply_chain_rule
@@ -120,13 +121,16 @@ def prove_move_clear(
         near = proved.nearest
         raise PathRefused(f"{move_name}: {near.describe_violation(proved.distance, settings.clearance_min)}")
     if load is not None and load.position is not None and gripper_open:
+        is_cup = model.arm.gripper == "suction"  # whose lip touches the object, and gives way
+        least = -CUP_REACH if is_cup else MIN_FINGER_DISTANCE
         fingers = prove_distance(
             ContinuousCheck.along_lines(waypoints, model.lever_arms()),
             partial(model.finger_distances, load=load),
-            MIN_FINGER_DISTANCE,
+            least,
         )
-        if fingers.distance < MIN_FINGER_DISTANCE:
-            raise PathRefused(f"{move_name}: the open fingers would hit the object; is the path centred on it?")
+        if fingers.distance < least:
+            what = "suction cup" if is_cup else "open fingers"
+            raise PathRefused(f"{move_name}: the {what} would hit the object; is the path centred on it?")
     return proved.distance
 
 

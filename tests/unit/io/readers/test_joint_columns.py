@@ -28,11 +28,10 @@ def read(raw: bytes, *, known: bool = True, **options: str) -> FileMotions:
     return read_motions(raw, "led.csv", "", ReadOptions(**options), ImportSettings(), kinematics)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
-    "names",
-    [PUMA_JOINTS, [f"J{k}" for k in range(1, 7)], [f"q{k} (rad)" for k in range(1, 7)], [f"Joint {k}" for k in range(1, 7)]],
-    ids=["arm", "j", "q", "joint"],
-)  # fmt: skip
+NAMES = {"arm": PUMA_JOINTS, **{way: [way.format(k) for k in range(1, 7)] for way in ("J{}", "q{} (rad)", "Joint {}")}}
+
+
+@pytest.mark.parametrize("names", NAMES.values(), ids=NAMES)
 def test_the_tool_is_where_the_arm_s_kinematics_say_and_the_joints_are_kept(names: list[str]) -> None:
     grasp = (TIMES > 0.2) & (TIMES < 0.6)
     found = read(content(["time", *names, "grasp"], np.column_stack([TIMES, ANGLES, grasp])), time_unit="s")
@@ -46,7 +45,9 @@ def test_the_tool_is_where_the_arm_s_kinematics_say_and_the_joints_are_kept(name
 def test_columns_may_be_in_any_order_and_in_degrees() -> None:
     order = [4, 1, 0, 5, 3, 2]
     names = [f"{PUMA_JOINTS[k]} [deg]" for k in order]
-    (track,) = read(content(["t", *names], np.column_stack([TIMES, np.degrees(ANGLES[:, order])])), time_unit="s").tracks
+    (track,) = read(
+        content(["t", *names], np.column_stack([TIMES, np.degrees(ANGLES[:, order])])), time_unit="s"
+    ).tracks
     assert track.joints is not None
     np.testing.assert_allclose(track.joints, ANGLES, atol=1e-12)
 
@@ -64,7 +65,7 @@ def test_positions_count_where_a_table_has_both() -> None:
 
 def test_wrong_angles_are_refused_with_what_is_wrong() -> None:
     degrees = content(["t", *PUMA_JOINTS], np.column_stack([TIMES, np.degrees(ANGLES)]))
-    with pytest.raises(UnusableRecording, match="joint1 is at .* angles in radians"):
+    with pytest.raises(UnusableRecording, match=r"joint1 is at .* angles in radians"):
         read(degrees, time_unit="s")
     with pytest.raises(UnusableRecording, match="no units of length"):
         read(degrees, time_unit="s", units="mm")

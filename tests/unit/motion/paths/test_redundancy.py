@@ -34,6 +34,15 @@ def usable() -> list[Candidate]:
     return usable_candidates(enumerate_candidates(PATH, ARM, SETTINGS), SETTINGS)
 
 
+def test_a_posture_that_was_shown_decides_on_solution_and_swivel(usable: list[Candidate]) -> None:
+    shown = usable[-1].joints  # the dearest
+    path = PATH.preferring(shown)
+    nearest, *_ = usable_candidates(enumerate_candidates(path, ARM, SETTINGS), SETTINGS, shown)
+    off, before = (np.abs(candidate.joints - shown).max() for candidate in (nearest, usable[0]))
+    assert off < 0.2
+    assert off < before / 2
+
+
 def misses(q: np.ndarray, poses: np.ndarray) -> float:
     return float(np.abs(serial_tool_pose(q, ARM.model) - poses).max())  # type: ignore[arg-type]
 

@@ -1,0 +1,19 @@
+"""What a player says of the output that is on."""
+
+from teachpath_client.driver import PlayerState, SetpointPlayer
+from tests.unit.clients.test_driver import DELAY, NOW, START, setpoint
+
+
+def test_an_output_is_on_while_setpoints_with_it_are_played_and_off_as_soon_as_none_is() -> None:
+    player = SetpointPlayer(START, delay=DELAY)
+    outputs = []
+    for ms in range(1000):
+        now = NOW + ms * 10**6
+        if ms % 4 == 0 and ms < 600:  # then nothing comes any more, in the middle of the motion
+            player.add(setpoint(ms // 4, output="glue" if ms >= 200 else ""), now)
+        player.advance(0.001, now)
+        outputs.append((player.state, player.output))
+    assert set(outputs[:200]) == {(PlayerState.PLAYING, "")}
+    assert {output for state, output in outputs[300:] if state is PlayerState.PLAYING} == {"glue"}
+    assert {output for state, output in outputs if state is not PlayerState.PLAYING} == {""}
+    assert outputs[-1] == (PlayerState.STOPPED, "")
