@@ -3,7 +3,14 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { driverTrouble, gripperText } from "../../clients/web/panels/driver_state.js";
 
-const WELL = { enabled: true, protective_stop: false, fault: "", gripper_closed: false, gripper_opening: 0.07, output: "" };
+const WELL = {
+  enabled: true,
+  protective_stop: false,
+  fault: "",
+  gripper_closed: false,
+  gripper_opening: 0.07,
+  output: "",
+};
 
 test("an arm that follows has no trouble, and the gravest trouble is told first, with the way out", () => {
   assert.equal(driverTrouble(WELL), "");

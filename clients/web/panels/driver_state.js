@@ -21,7 +21,7 @@ export function driverState(place) {
         definitionList([
           ["Drives", state.enabled ? "on" : "off"],
           ["Gripper", gripper],
-          state.output && ["Output", `${state.output} is on`],
+          state.output ? ["Output", `${state.output} is on`] : null,
         ]),
       ]);
     },

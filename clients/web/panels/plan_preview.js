@@ -187,6 +187,9 @@ function planFacts({ duration, certificate, tool_speed: limit, posture, output }
       "Output",
       `${output.name}, on along the path; rests ${formatNumber(output.start, 1, "s")} before it and ${formatNumber(output.end, 1, "s")} behind it with it on`,
     ],
-    posture && ["Farthest from what the arm showed", `${formatNumber((180 * posture.distance.value) / Math.PI, 1, "°")}, ${posture.distance.place}`],
+    posture && [
+      "Farthest from what the arm showed",
+      `${formatNumber((180 * posture.distance.value) / Math.PI, 1, "°")}, ${posture.distance.place}`,
+    ],
   ]);
 }
