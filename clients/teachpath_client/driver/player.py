@@ -19,6 +19,7 @@ import numpy as np
 
 from teachpath_client.driver.interpolation import BLEND_TIME, Array, Quintic, WayToRest, blended
 from teachpath_client.driver.least_jerk import LeastJerk
+from teachpath_client.driver.output import OutputSwitch, output_of
 
 MAX_QUEUE: Final = 2000  # setpoints that wait at most; with more the sender's clock is wrong
 MAX_CLOCK_ERROR: Final = 1.0  # s, of a clock that is so far off that its times cannot be meant
@@ -101,6 +102,7 @@ class SetpointPlayer:
         self.last_reached: SetpointLike | None = None  # the newest setpoint that was played
         self._delay, self._period = delay, period
         self._queue: deque[SetpointLike] = deque()
+        self._output = OutputSwitch()
         self._newest = -1  # cycle of the newest setpoint that was taken
         self._begin_ns = 0  # nominal time from which `_played` counts
         self._played = 0.0  # s
@@ -118,7 +120,7 @@ class SetpointPlayer:
     @property
     def output(self) -> str:
         """Name of the output that is on: that of the setpoint played last; empty while none is played."""
-        return _output(self.last_reached) if self.state is PlayerState.PLAYING else ""
+        return self._output.name if self.state is PlayerState.PLAYING else ""
 
     @property
     def at_rest(self) -> bool:
@@ -169,6 +171,7 @@ class SetpointPlayer:
             if not self._queue or not self._follows(self._queue[0]):
                 self._stop_if_due()
             self._wait_at_rest()
+        self._output.update(self.last_reached, dt, is_fed=bool(self._queue or reached))
         self._aim(dt)
         return reached
 
@@ -244,7 +247,7 @@ class SetpointPlayer:
             and _is_still(following)
             and np.array_equal(last.position, following.position)
             and last.gripper_closed == following.gripper_closed
-            and _output(last) == _output(following)
+            and output_of(last) == output_of(following)
         )
 
     def _wait_at_rest(self) -> None:
@@ -286,10 +289,6 @@ class SetpointPlayer:
             p, v, a = (value + part for value, part in zip((p, v, a), blended(off, since), strict=True))
             self._blend = (off, since + dt)
         self.target = TargetMotion(p, v, a)
-
-
-def _output(setpoint: SetpointLike | None) -> str:
-    return getattr(setpoint, "output", "")  # setpoints of a driver's own may have none
 
 
 def _same_place(one: SetpointLike, two: SetpointLike) -> bool:
