@@ -140,6 +140,11 @@ class ProgramFactory:
                 "that scene, or set another where another one stands around the arm"
             )
         scene = ask_scene(self._bus, self._keys, request.scene)
+        if scene.carried is not None and self.arm.gripper == "suction":
+            raise PathRefused(
+                f"a live hand leads a suction cup in scenes without an object alone, and {scene.name} has "
+                f"{scene.carried.name}: nobody checks how the cup comes upon it; plan a path, or name another scene"
+            )
         start_q = self._joint_states.resting_q(self._settings.rest_speed)
         monotonic_ns = self._time.monotonic_ns
         hand = HandInput(self._bus, self._keys, request, silence=self._settings.hand_silence, clock=monotonic_ns)
