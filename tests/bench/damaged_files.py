@@ -16,7 +16,7 @@ from collections.abc import Callable
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from tests.unit.io.readers.bags import STORAGES, write_bag
 from tests.unit.io.readers.test_bags import motion
 from tests.unit.io.readers.test_damage import damaged
 from tests.unit.io.readers.test_formats import ARRAYS, FILES, mat
+from tests.unit.io.readers.test_hdf5 import markers, robomimic
 from tests.unit.io.readers.test_lerobot import COLUMNS, NAME, frames
 
 Result = tuple[int, int, float, float, str]  # read, refused, slowest [s], memory [MB], what went wrong
@@ -40,6 +41,7 @@ def main(count: int, chosen: list[str]) -> int:
     files = {kind: (kind, name, content) for kind, (name, content) in FILES.items()}
     files["mat, plain"] = ("mat", "f.mat", mat(compressed=False, **ARRAYS))
     files["lerobot"] = ("lerobot", NAME, frames())
+    files["hdf5"], files["c3d"] = ("hdf5", "f.hdf5", robomimic()), ("c3d", "f.c3d", markers(["LWRA"]))
     with tempfile.TemporaryDirectory() as folder:
         for storage in STORAGES:
             place = Path(folder) / storage
@@ -49,27 +51,27 @@ def main(count: int, chosen: list[str]) -> int:
     print(f"{'format':14} {'read':>6} {'refused':>8} {'slowest [s]':>12} {'memory [MB]':>12}")
     for label, (kind, name, content) in files.items():
         if not chosen or label in chosen:
-            read, refused, slowest, memory, fault = _apart(partial(_try, kind, name, content, count))
+            read, refused, slowest, memory, fault = apart(partial(_try, kind, name, content, count))
             print(f"{label:14} {read:6} {refused:8} {slowest:12.2f} {memory:12.0f} {fault}", flush=True)
             good &= not fault and slowest <= LONGEST and memory <= MOST_MEMORY
     return 0 if good else 1
 
 
-def _apart(work: Callable[[], Result]) -> Result:
+def apart(work: Callable[[], Any]) -> Any:
     """Run in a process of its own, whose memory is measured; that dies with what it tried to read."""
     near, far = multiprocessing.get_context("fork").Pipe(duplex=False)
     process = multiprocessing.get_context("fork").Process(target=_send, args=(far, work))
     process.start()
     far.close()
     try:
-        return near.recv()  # type: ignore[no-any-return]
+        return near.recv()
     except EOFError:
         return 0, 0, float("nan"), float("nan"), "the process died"
     finally:
         process.join()
 
 
-def _send(far: Connection, work: Callable[[], Result]) -> None:
+def _send(far: Connection, work: Callable[[], object]) -> None:
     far.send(work())
 
 

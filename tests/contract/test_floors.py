@@ -89,8 +89,10 @@ DOORS = {
     "typer": ["__main__.py", "commands"],
     "rich": ["commands"],
     "prometheus_client": ["api/metrics.py"],
-    "pyarrow": ["io/lerobot.py", "io/readers/lerobot.py"],
+    "pyarrow": ["io/lerobot.py", "io/lerobot_v21.py", "io/readers/lerobot.py"],
     "rosbags": ["io/readers/bags.py"],
+    "h5py": ["io/readers/hdf5.py"],
+    "c3d": ["io/readers/c3d.py"],
     "pydantic": ["config.py", "api"],
 }
 

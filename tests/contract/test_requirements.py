@@ -43,7 +43,10 @@ def test_everything_that_is_asked_for_is_pinned() -> None:
     service, site, dev = (set(pinned(FILES[name])) for name in ("service", "site", "dev"))
     assert wanted(PYPROJECT["project"]["dependencies"], extras["service"], groups["build"]) <= service
     assert wanted(extras["postgres"], extras["s3"]) <= service | site
-    assert wanted(extras["dev"], extras["dask"], extras["lerobot"], extras["ros"]) <= service | site | dev
+    assert (
+        wanted(extras["dev"], extras["dask"], extras["formats"], extras["lerobot"], extras["ros"])
+        <= service | site | dev
+    )
     assert wanted(groups["setup"]) == set(pinned(FILES["uv"]))
     for name, text in APART.items():
         assert wanted(groups[name]) <= set(pinned(text))

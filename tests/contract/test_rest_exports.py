@@ -21,7 +21,7 @@ def test_a_demonstration_is_taken_away_and_brought_back(desk: Desk, kind: str) -
     assert ways[0]["positions"] == ways[1]["positions"]
 
 
-@pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory", "lerobot", "archive"])
+@pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory", "lerobot", "lerobot-2.1", "archive"])
 def test_a_task_is_taken_away_as_a_zip(desk: Desk, kind: str) -> None:
     task = f"zipped-{kind}"
     made = [desk.import_(task, csv())[0] for _ in range(2)]
@@ -30,7 +30,7 @@ def test_a_task_is_taken_away_as_a_zip(desk: Desk, kind: str) -> None:
         archive = zipfile.ZipFile(io.BytesIO(desk.get(f"/tasks/{task}/export?format={kind}&all={all_}").content))
         assert archive.testzip() is None
         names = archive.namelist()
-        if kind == "lerobot":
+        if kind in ("lerobot", "lerobot-2.1"):
             assert f"{task}/meta/info.json" in names
         else:
             assert len(names) - len(BESIDE.get(kind, ())) == count

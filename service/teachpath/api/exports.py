@@ -19,13 +19,13 @@ from teachpath.offline.exporting import chosen
 from teachpath.records import Demonstration
 
 OneFormat = Literal["csv", "mcap", "trajectory"]
-Format = Literal["csv", "mcap", "trajectory", "lerobot", "archive"]
+Format = Literal["csv", "mcap", "trajectory", "lerobot", "lerobot-2.1", "archive"]
 CSV: Final = "text/csv"
 ZIP: Final = "application/zip"
 MEDIA_TYPES: Final = {".csv": CSV, ".zip": ZIP}
 FORMAT = (
-    "csv or mcap: every sample, to be imported again; trajectory: the object's, as csv; lerobot: a dataset; archive: "
-    "the task, with a SHA-256 of each file"
+    "csv or mcap: every sample, to be imported again; trajectory: the object's, as csv; lerobot: a dataset of version "
+    "3.0; lerobot-2.1: of version 2.1; archive: the task, with a SHA-256 of each file"
 )
 
 

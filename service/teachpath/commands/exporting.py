@@ -33,8 +33,8 @@ def demonstrations(
     format: Annotated[
         str,
         typer.Option(
-            help="csv or mcap (every sample), lerobot (a dataset), trajectory (the object's, csv), archive (the task "
-            "as a zip file, with a SHA-256 of each file)."
+            help="csv or mcap (every sample), lerobot (a dataset of version 3.0), lerobot-2.1, trajectory (the "
+            "object's, csv), archive (the task as a zip file, with a SHA-256 of each file)."
         ),
     ] = "mcap",
     into: Into = Path(),

@@ -32,14 +32,17 @@ REJECTED = 3  # exit status: all are stored, and some are rejected
 FIRST_SECOND = 1.0  # [s] of a motion that a dry run shows
 MAX_SHOWN = 5  # points of it
 # That are imported of a folder.
-SUFFIXES = (".csv", ".tsv", ".npy", ".npz", ".mat", ".traj", ".trc", ".tum", ".mcap", ".db3", ".bag", ".parquet")
+SUFFIXES = (
+    ".csv", ".tsv", ".npy", ".npz", ".mat", ".hdf5", ".h5", ".traj", ".trc", ".c3d", ".tum", ".mcap", ".db3", ".bag",
+    ".parquet",
+)  # fmt: skip
 
 
 Format = Annotated[
     str,
     typer.Option(
-        help="csv, npy, npz, mat, matrices (4x4), robottasks (.npy), motive, vicon, trc, tum, euroc, rosbag, lerobot, "
-        "mcap, or of an installed reader; empty: what the file has."
+        help="csv, npy, npz, mat, hdf5, matrices (4x4), robottasks (.npy), motive, vicon, trc, c3d, tum, euroc, arkit, "
+        "rosbag, lerobot, mcap, or of an installed reader; empty: what the file has."
     ),
 ]
 Columns = Annotated[

@@ -75,17 +75,18 @@ def write_dataset(
     largest_file: int = LARGEST_FILE,
 ) -> None:
     """Write a dataset into the folder `root`, which must be empty; raises OSError."""
-    features = dataset.features | _counters(dataset)
+    features = all_features(dataset)
     files = _write_frames(root, features, largest_file, progress)
-    per_episode = [{name: _stats(f.values[k]) for name, f in features.items()} for k in range(len(dataset.lengths))]
+    per_episode = [{name: statistics(f.values[k]) for name, f in features.items()} for k in range(len(dataset.lengths))]
     _write_episodes(root, dataset, files, per_episode)
     _write_tasks(root, dataset.task)
-    whole = {name: _stats(np.concatenate(f.values)) for name, f in features.items()}
-    _write_json(root / "meta" / "stats.json", whole)
-    _write_json(root / "meta" / "info.json", _info(dataset, features))
+    whole = {name: statistics(np.concatenate(f.values)) for name, f in features.items()}
+    write_json(root / "meta" / "stats.json", whole)
+    write_json(root / "meta" / "info.json", _info(dataset, features))
 
 
-def _counters(dataset: Dataset) -> dict[str, Feature]:
+def all_features(dataset: Dataset) -> dict[str, Feature]:
+    """Return the columns of frames, those that LeRobot itself needs among them."""
     lengths, starts = dataset.lengths, np.cumsum([0, *dataset.lengths])
     frames = [np.arange(n)[:, None] for n in lengths]
     columns = {
@@ -95,7 +96,8 @@ def _counters(dataset: Dataset) -> dict[str, Feature]:
         "task_index": [np.zeros((n, 1), dtype=np.int64) for n in lengths],
     }
     times = Feature("float32", (), [times[:, None] for times in dataset.times])
-    return {"timestamp": times} | {name: Feature("int64", (), values) for name, values in columns.items()}
+    counters = {name: Feature("int64", (), values) for name, values in columns.items()}
+    return dataset.features | {"timestamp": times} | counters
 
 
 def _write_frames(
@@ -107,13 +109,12 @@ def _write_frames(
     count = len(features["index"].values)
     try:
         for k in range(count):
-            table = pa.table({name: _column(feature, k) for name, feature in features.items()})
-            table = table.replace_schema_metadata({STATE_NAMES: json.dumps(features[STATE].names)})
+            table = frame_table(features, k)
             if writer is None or written + table.nbytes > largest_file:
                 if writer is not None:
                     writer.close()
                 number, written = number + 1, 0
-                writer = pq.ParquetWriter(_made(root / "data" / _file(number)), table.schema, compression="snappy")
+                writer = pq.ParquetWriter(made(root / "data" / _file(number)), table.schema, compression="snappy")
             writer.write_table(table)
             written += table.nbytes
             files.append(number)
@@ -122,6 +123,12 @@ def _write_frames(
         if writer is not None:
             writer.close()
     return files
+
+
+def frame_table(features: dict[str, Feature], episode: int) -> Any:
+    """Return the frames of an episode as a table."""
+    table = pa.table({name: _column(feature, episode) for name, feature in features.items()})
+    return table.replace_schema_metadata({STATE_NAMES: json.dumps(features[STATE].names)})
 
 
 def _column(feature: Feature, episode: int) -> Any:
@@ -147,7 +154,7 @@ def _write_episodes(root: Path, dataset: Dataset, files: list[int], stats: list[
     columns |= {f"teachpath/{name}": said for name, said in dataset.episodes.items()}
     for feature, values in stats[0].items():
         columns |= {f"stats/{feature}/{what}": [episode[feature][what] for episode in stats] for what in values}
-    pq.write_table(pa.table(columns), _made(root / "meta" / "episodes" / _file(0)))
+    pq.write_table(pa.table(columns), made(root / "meta" / "episodes" / _file(0)))
 
 
 def _write_tasks(root: Path, task: str) -> None:
@@ -165,7 +172,7 @@ def _write_tasks(root: Path, task: str) -> None:
     }
     table = pa.table({"task_index": pa.array([0], pa.int64()), "task": pa.array([task], pa.string())})
     schema = {"pandas": json.dumps(pandas)}
-    pq.write_table(table.replace_schema_metadata(schema), _made(root / "meta" / "tasks.parquet"))
+    pq.write_table(table.replace_schema_metadata(schema), made(root / "meta" / "tasks.parquet"))
 
 
 def _info(dataset: Dataset, features: dict[str, Feature]) -> dict[str, Any]:
@@ -182,14 +189,19 @@ def _info(dataset: Dataset, features: dict[str, Feature]) -> dict[str, Any]:
         "splits": {"train": f"0:{len(dataset.lengths)}"},
         "data_path": f"data/{FILE}",
         "video_path": None,
-        "features": {
-            name: {"dtype": f.dtype, "shape": [max(len(f.names), 1)], "names": list(f.names) or None}
-            for name, f in features.items()
-        },
+        "features": described(features),
     }
 
 
-def _stats(values: NDArray[Any]) -> dict[str, list[float]]:
+def described(features: dict[str, Feature]) -> dict[str, Any]:
+    """Return what info.json says of the columns."""
+    return {
+        name: {"dtype": f.dtype, "shape": [max(len(f.names), 1)], "names": list(f.names) or None}
+        for name, f in features.items()
+    }
+
+
+def statistics(values: NDArray[Any]) -> dict[str, list[float]]:
     """Return what LeRobot normalises by, lists of d numbers of (n, d) values; least and greatest are of their type."""
     numbers = values.astype(np.float64)
     found = {
@@ -206,10 +218,12 @@ def _file(number: int) -> str:
     return FILE.format(chunk_index=number // CHUNK, file_index=number % CHUNK)
 
 
-def _made(file: Path) -> Path:
+def made(file: Path) -> Path:
+    """Return a file after its folder was made."""
     file.parent.mkdir(parents=True, exist_ok=True)
     return file
 
 
-def _write_json(file: Path, document: dict[str, Any]) -> None:
-    _made(file).write_text(json.dumps(document, indent=4) + "\n")
+def write_json(file: Path, document: dict[str, Any]) -> None:
+    """Write a document into a file, whose folder is made when it is missing."""
+    made(file).write_text(json.dumps(document, indent=4) + "\n")

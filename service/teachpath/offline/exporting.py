@@ -18,7 +18,8 @@ from teachpath.io.store.store import Store
 from teachpath.offline import task_archive
 from teachpath.records import Demonstration, Trajectory
 
-FORMATS = ("csv", "mcap", "lerobot", "trajectory", "archive")
+DATASETS = ("lerobot", "lerobot-2.1")
+FORMATS = ("csv", "mcap", *DATASETS, "trajectory", "archive")
 SUFFIXES = {"csv": ".csv", "mcap": ".mcap", "trajectory": "-trajectory.csv"}
 PART = ".part"
 Progress = Callable[[float, str], None]
@@ -51,9 +52,9 @@ def export_demonstrations(
     """Write demonstrations of one task into a folder, which is made when it is missing, and return what was written.
 
     csv and mcap make a file each, `TASK-NUMBER.csv`, with every sample; trajectory makes a CSV file of the object's
-    motion, as `trajectory` gives it; lerobot makes one dataset, the folder `TASK`, and archive one file, `TASK.zip`
-    (`task_archive`). What is being written ends in `.part` and is renamed when it is whole; what is there already is
-    never overwritten.
+    motion, as `trajectory` gives it; lerobot and lerobot-2.1 make one dataset, the folder `TASK`, and archive one file,
+    `TASK.zip` (`task_archive`). What is being written ends in `.part` and is renamed when it is whole; what is there
+    already is never overwritten.
 
     Raises:
         UnusableInput: an unknown format, a folder that cannot be written, or pyarrow is missing.
@@ -65,8 +66,8 @@ def export_demonstrations(
     first = demonstrations[0]
     try:
         into.mkdir(parents=True, exist_ok=True)
-        if kind == "lerobot":
-            return [_whole(into / first.task, lambda part: _write_lerobot(store, demonstrations, part, progress))]
+        if kind in DATASETS:
+            return [_whole(into / first.task, lambda part: _write_lerobot(store, demonstrations, kind, part, progress))]
         if kind == "archive":
             archive = into / f"{first.task}{task_archive.SUFFIX}"
             return [_whole(archive, lambda part: task_archive.write_archive(store, demonstrations, part, progress))]
@@ -124,12 +125,14 @@ def _whole(target: Path, write: Callable[[Path], object]) -> Path:
     return target
 
 
-def _write_lerobot(store: Store, demonstrations: Sequence[Demonstration], root: Path, progress: Progress) -> None:
+def _write_lerobot(
+    store: Store, demonstrations: Sequence[Demonstration], kind: str, root: Path, progress: Progress
+) -> None:
     try:
         from teachpath.offline.lerobot_dataset import write_lerobot
     except ModuleNotFoundError as error:
         raise UnusableInput(
-            f"the format lerobot needs {error.name}, which is not installed; install it with: pip install "
+            f"the format {kind} needs {error.name}, which is not installed; install it with: pip install "
             "'teachpath[lerobot]'"
         ) from None
-    write_lerobot(store, demonstrations, root, progress)
+    write_lerobot(store, demonstrations, kind, root, progress)

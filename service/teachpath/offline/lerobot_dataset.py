@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from teachpath.io.lerobot import Dataset, Feature, write_dataset
+from teachpath.io.lerobot_v21 import write_dataset_v21
 from teachpath.io.store.store import Store
 from teachpath.recording.demonstration import carried_numbers, to_world
 from teachpath.recording.phases import TransportSpan
@@ -19,10 +20,17 @@ from teachpath_proto.sample_rules import GRASP_BUTTON
 RATE = 50  # [Hz] said of demonstrations whose own rate is not known
 
 
+WRITERS: Final = {"lerobot": write_dataset, "lerobot-2.1": write_dataset_v21}  # by the name of the format
+
+
 def write_lerobot(
-    store: Store, demonstrations: Sequence[Demonstration], root: Path, progress: Callable[[float, str], None]
+    store: Store,
+    demonstrations: Sequence[Demonstration],
+    kind: str,
+    root: Path,
+    progress: Callable[[float, str], None],
 ) -> None:
-    """Write demonstrations of one task as a dataset into the new folder `root`.
+    """Write demonstrations of one task as a dataset of a kind (a key of `WRITERS`) into the new folder `root`.
 
     A frame is a sample, in the order of their numbers, each once; untracked ones are flagged, and none is made up.
     """
@@ -31,7 +39,7 @@ def write_lerobot(
         progress(done / len(demonstrations) / 2, f"reading demonstration {d.number}")
         takes.append(store.recordings.samples(d.recording, d.digest))
     root.mkdir()
-    write_dataset(root, dataset_of(demonstrations, takes), lambda f: progress(0.5 + f / 2, "writing the dataset"))
+    WRITERS[kind](root, dataset_of(demonstrations, takes), lambda f: progress(0.5 + f / 2, "writing the dataset"))
     progress(1.0, "done")
 
 

@@ -10,6 +10,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from teachpath.io import lerobot
+from teachpath.io.import_settings import ImportSettings
+from teachpath.io.readers.contract import ReadOptions
+from teachpath.io.readers.registry import read_motions
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.exporting import export_demonstrations
@@ -27,8 +30,8 @@ def store(tmp_path: Path) -> Iterator[Store]:
     store.close()
 
 
-def exported(store: Store, rows: list[Demonstration], into: Path) -> Path:
-    (root,) = export_demonstrations(store, rows, "lerobot", into, trajectory=trajectory(store))
+def exported(store: Store, rows: list[Demonstration], into: Path, kind: str = "lerobot") -> Path:
+    (root,) = export_demonstrations(store, rows, kind, into, trajectory=trajectory(store))
     return root
 
 
@@ -106,6 +109,52 @@ def test_the_layout_is_that_of_version_3(store: Store, tmp_path: Path) -> None:
     tasks = pq.read_table(root / "meta" / "tasks.parquet")
     assert tasks.to_pydict() == {"task_index": [0], "task": ["lift"]}
     assert json.loads(tasks.schema.metadata[b"pandas"])["index_columns"] == ["task"]
+
+
+def test_the_layout_is_that_of_version_2_1(store: Store, tmp_path: Path) -> None:
+    rows = [record(store, whole()), record(store, lossy())]
+    root = exported(store, rows, tmp_path, "lerobot-2.1")
+    takes = [once(store.recordings.samples(row.recording)) for row in rows]
+    info = json.loads((root / "meta" / "info.json").read_text())
+    assert (info["codebase_version"], info["fps"], info["total_chunks"], info["total_videos"]) == ("v2.1", 50, 1, 0)
+    assert (info["total_episodes"], info["total_frames"]) == (2, sum(map(len, takes)))
+
+    def lines(name: str) -> list[Any]:
+        return [json.loads(line) for line in (root / "meta" / f"{name}.jsonl").read_text().splitlines()]
+
+    assert lines("tasks") == [{"task_index": 0, "task": "lift"}]
+    for k, (row, take) in enumerate(zip(rows, takes, strict=True)):
+        read = pq.read_table(root / info["data_path"].format(episode_chunk=0, episode_index=k)).to_pydict()
+        assert set(read) == set(info["features"])
+        assert read["timestamp"] == pytest.approx([i / 50 for i in range(len(take))])  # its reader refuses others
+        assert read["device_ns"] == [sample.device_ns for sample in take]
+        episode, stats = lines("episodes")[k], lines("episodes_stats")[k]
+        assert (episode["length"], episode["teachpath/demonstration"]) == (len(take), row.id)
+        assert (episode["episode_index"], stats["episode_index"]) == (k, k)
+        assert set(stats["stats"]) == set(read)
+        for name in ("device_ns", "tracked"):
+            assert stats["stats"][name]["max"] == [max(read[name])]
+            assert set(stats["stats"][name]) == {"min", "max", "mean", "std", "count"}
+
+
+@pytest.mark.parametrize("kind", ["lerobot", "lerobot-2.1"])
+def test_what_is_exported_is_read_back_with_its_own_clock(store: Store, tmp_path: Path, kind: str) -> None:
+    rows = [record(store, whole()), record(store, lossy())]
+    root = exported(store, rows, tmp_path, kind)
+    tracks = [
+        track
+        for file in sorted((root / "data").glob("*/*.parquet"))
+        for track in read_motions(file.read_bytes(), file.name, "", ReadOptions(), ImportSettings()).tracks
+    ]
+    for row, track in zip(rows, tracks, strict=True):
+        true = once(store.recordings.samples(row.recording))
+        assert track.stamps_ns.tolist() == [sample.device_ns for sample in true]
+        assert track.orientations is not None
+        assert track.closure is not None
+        seen = np.array([sample.tracked for sample in true])
+        assert (np.ones(len(true), np.bool_) if track.tracked is None else track.tracked).tolist() == seen.tolist()
+        world = to_world(LAB, np.array([sample.position for sample in true]))
+        assert np.allclose(track.positions[seen], world[seen], atol=1e-6)
 
 
 def test_the_statistics_are_those_of_the_frames(store: Store, tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ def read_robottasks(content: bytes, name: str, options: ReadOptions, limits: Imp
     """Read kinesthetic demonstrations: motions of x, y, z [cm], w, x, y, z without a clock."""
     values = _motions(content, name, limits, columns=(7,), single=False)
     length, rate = options.units or "cm", options.rate or RATE
-    stamps = _even_stamps(values.shape[1], rate)
+    stamps = even_stamps(values.shape[1], rate)
     tracks = [Track(stamps, v[:, :3] * UNITS[length], _quaternions(v[:, 3:], options)) for v in values]
     understood = (f"{rate:g} Hz, it has no clock", f"position in {length}", _order(options))
     return FileMotions(tracks, understood, whole_motion=True)
@@ -111,7 +111,7 @@ def named_motion(arrays: Mapping[str, NDArray[Any]], name: str, options: ReadOpt
     length, turned = options.units or "m", found["orientations"]
     if times is None:
         stamps, clock = (
-            _even_stamps(len(positions), options.rate or RATE),
+            even_stamps(len(positions), options.rate or RATE),
             f"{options.rate or RATE:g} Hz, it has no clock",
         )
     else:
@@ -144,7 +144,7 @@ def read_matrices(content: bytes, name: str, options: ReadOptions, limits: Impor
         raise UnusableRecording(f"{name}, {where}: matrices have four rows of four numbers; is the file truncated?")
     positions, orientations = _poses(np.array(rows).reshape(-1, 4, 4), name)
     length, rate = options.units or "m", options.rate or RATE
-    track = Track(_even_stamps(len(positions), rate), positions * UNITS[length], orientations)
+    track = Track(even_stamps(len(positions), rate), positions * UNITS[length], orientations)
     return FileMotions([track], (f"{rate:g} Hz, it has no clock", f"position in {length}", "orientation from matrices"))
 
 
@@ -218,7 +218,8 @@ def _load_archive(content: bytes, name: str, limits: ImportSettings) -> dict[str
     return arrays
 
 
-def _even_stamps(count: int, rate: float) -> Integers:
+def even_stamps(count: int, rate: float) -> Integers:
+    """Return the stamps (count,) [ns] of readings at a rate [Hz], from 0."""
     return np.round(np.arange(count) * (1e9 / rate)).astype(np.int64)
 
 

@@ -21,6 +21,7 @@ MAGIC: Final = b"PAR1"
 STATE: Final = "observation.state"
 COUNTERS: Final = ("frame_index", "index", "task_index")  # that say nothing of a motion
 NAMES_KEY: Final = b"teachpath.state"  # metadata of teachpath's own files: names of the numbers of the state
+OWN_CLOCK: Final = "device_ns"  # column of teachpath's own files: when a sample was taken
 WIDEST: Final = 64  # numbers of a list that are columns
 DELIMITER: Final = ","
 
@@ -33,6 +34,9 @@ def read_lerobot(content: bytes, name: str, options: ReadOptions, limits: Import
         UnusableInput: pyarrow is not installed.
     """
     columns, episodes = _columns(content, name, limits)
+    if OWN_CLOCK in columns and not options.columns:
+        del columns["timestamp"]  # which in version 2.1 is the frame's number over the rate
+        columns["timestamp [ns]"] = columns.pop(OWN_CLOCK)
     header = list(columns)
     texts = [[repr(value) for value in values] for values in columns.values()]
     rows = [(number, list(cells)) for number, cells in enumerate(zip(*texts, strict=True), 1)]

@@ -14,6 +14,7 @@ from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.arrays import NAMES, named_motion
 from teachpath.io.readers.contract import FileMotions, Reader, ReadOptions
+from teachpath.io.readers.hdf5 import root_arrays
 
 HEAD, HDF5_HEAD = b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file"
 NUMBER_SIZE = 8  # bytes of a number of MATLAB's usual type
@@ -25,11 +26,13 @@ def read_mat(content: bytes, name: str, options: ReadOptions, limits: ImportSett
     """Read arrays named as in npz: t, positions, perhaps orientations, tracked and grasp, or poses (4, 4, n).
 
     Raises:
-        UnusableRecording: it is a file of version 7.3, holds no positions, or more than the limits allow.
+        UnusableRecording: it holds no positions, or more than the limits allow.
+        UnusableInput: it is of version 7.3, and h5py is not installed.
     """
-    if content.startswith(HDF5_HEAD):
-        raise UnusableRecording(f"{name}: a MAT file of version 7.3; write it in MATLAB with save(..., '-v7')")
-    arrays = _arrays(content, name, limits)
+    if content.startswith(HDF5_HEAD):  # whose arrays lie the other way round
+        arrays = {key: array.T for key, array in root_arrays(content, name, limits).items()}
+    else:
+        arrays = _arrays(content, name, limits)
     found = {key: _by_rows(role, arrays[key]) for role, keys in NAMES.items() for key in keys if key in arrays}
     return named_motion(found, name, options)
 

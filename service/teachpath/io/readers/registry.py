@@ -12,6 +12,7 @@ from teachpath.errors import UnusableInput, UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.arrays import MATRICES, NPY, NPZ, ROBOTTASKS, check_count
 from teachpath.io.readers.bags import ROSBAG
+from teachpath.io.readers.c3d import C3D
 from teachpath.io.readers.checks import checked
 from teachpath.io.readers.columns import parse_columns
 from teachpath.io.readers.contract import (
@@ -24,15 +25,33 @@ from teachpath.io.readers.contract import (
     ReadOptions,
     unheard,
 )
+from teachpath.io.readers.hdf5 import HDF5
 from teachpath.io.readers.joints import ToolKinematics, with_tool_motions
 from teachpath.io.readers.lerobot import LEROBOT
 from teachpath.io.readers.matlab import MATLAB
 from teachpath.io.readers.motion_capture import MOTIVE, TRC, VICON
-from teachpath.io.readers.tables import EUROC, TABLE, TUM
+from teachpath.io.readers.tables import ARKIT, EUROC, TABLE, TUM
 
 GROUP = "teachpath.readers"
 LARGEST_FILE = 64 * 1024 * 1024  # bytes
-HOUSE = (MOTIVE, VICON, TRC, EUROC, TUM, MATRICES, MATLAB, NPZ, NPY, ROBOTTASKS, ROSBAG, LEROBOT, TABLE)
+HOUSE = (
+    MOTIVE,
+    VICON,
+    TRC,
+    C3D,
+    EUROC,
+    TUM,
+    ARKIT,
+    MATRICES,
+    MATLAB,
+    HDF5,
+    NPZ,
+    NPY,
+    ROBOTTASKS,
+    ROSBAG,
+    LEROBOT,
+    TABLE,
+)
 
 
 @functools.cache

@@ -161,3 +161,9 @@ EUROC = Reader(
     _preset("t=1,x=2,y=3,z=4,qw=5,qx=6,qy=7,qz=8", "ns"),
     lambda content, name: _begins(content, b"timestamp", b"p_rs_r_x", b"q_rs_w"),
 )
+ARKIT = Reader(
+    "arkit",
+    "poses of ARKit: t, x, y, z, qw, qx, qy, qz",
+    _preset("t=1,x=2,y=3,z=4,qw=5,qx=6,qy=7,qz=8", "s"),
+    lambda content, name: name.endswith("arposes.txt"),
+)

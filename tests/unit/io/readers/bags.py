@@ -1,6 +1,6 @@
 """Bags as the tools of ROS 1 and 2 write them, in all three storages."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -72,16 +72,23 @@ class Messages:
 
 def write_bag(folder: Path, storage: str, messages: Sequence[tuple[str, str, int, Any]]) -> bytes:
     """Return the file of a bag of messages: topic, type, when it was recorded [ns], and the message."""
-    store, topics = STORES[storage], dict.fromkeys((topic, kind) for topic, kind, _, _ in messages)
+    return bag_file(folder, storage, messages).read_bytes()
+
+
+def bag_file(folder: Path, storage: str, messages: Iterable[tuple[str, str, int, Any]]) -> Path:
+    """Write the file of a bag of messages, one after the other; likewise."""
+    store, opened = STORES[storage], dict[tuple[str, str], Any]()
     if storage == "bag":
         with Writer1(folder / "f.bag") as writer1:
-            known = {each: writer1.add_connection(*each, typestore=store) for each in topics}
             for topic, kind, logged, message in messages:
-                writer1.write(known[topic, kind], logged, store.serialize_ros1(message, kind))
-        return (folder / "f.bag").read_bytes()
+                if (topic, kind) not in opened:
+                    opened[topic, kind] = writer1.add_connection(topic, kind, typestore=store)
+                writer1.write(opened[topic, kind], logged, store.serialize_ros1(message, kind))
+        return folder / "f.bag"
     plugin = StoragePlugin.MCAP if storage == "mcap" else StoragePlugin.SQLITE3
     with Writer2(folder / "f", version=9, storage_plugin=plugin) as writer2:
-        opened = {each: writer2.add_connection(*each, typestore=store) for each in topics}
         for topic, kind, logged, message in messages:
+            if (topic, kind) not in opened:
+                opened[topic, kind] = writer2.add_connection(topic, kind, typestore=store)
             writer2.write(opened[topic, kind], logged, store.serialize_cdr(message, kind))
-    return next((folder / "f").glob(f"*.{storage}")).read_bytes()
+    return next((folder / "f").glob(f"*.{storage}"))

@@ -151,7 +151,7 @@ def test_arrays_of_matlab_may_lie_on_their_side(arrays: dict[str, object]) -> No
     [
         (mat(trial={"positions": POSITIONS}), r"no array positions \(n, 3\) in it; it holds trial \(struct\)"),
         (mat(positions="none"), r"it holds positions \(char\)"),
-        (b"MATLAB 7.3 MAT-file, made by hand", r"version 7.3; write it in MATLAB with save\(..., '-v7'\)"),
+        (b"MATLAB 7.3 MAT-file, made by hand", "not a whole file of format mat"),
         (mat(positions=np.zeros((600_000, 3), np.int8)), "600000 samples, limit 500000"),
         (mat(positions=np.zeros((20_000_000, 3), np.int8)), "expand to 480000000 bytes, limit 268435456"),
     ],
