@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from typing import Generic, Protocol, Self, TypeVar
 
-from teachpath_client.devices.serial_line import SerialLine
+from teachpath_client.devices.byte_stream import ByteStream
 from teachpath_client.errors import ClientError
 
 LOG = logging.getLogger(__name__)
@@ -36,13 +36,13 @@ class Parser(Protocol[Record]):
 class DeviceProtocol(Protocol[Record]):
     """The commands that set a device up, poll it and shut it down."""
 
-    def set_up(self, line: SerialLine) -> Parser[Record]:
+    def set_up(self, line: ByteStream) -> Parser[Record]:
         """Set the device up and return the parser of what it will send; raises ClientError when it does not answer."""
 
-    def poll(self, line: SerialLine) -> float:
+    def poll(self, line: ByteStream) -> float:
         """Send the commands that are due; return the seconds until the next one is."""
 
-    def shut_down(self, line: SerialLine) -> None:
+    def shut_down(self, line: ByteStream) -> None:
         """Make the device stop sending."""
 
 
@@ -61,7 +61,7 @@ class Connection(Generic[Record]):
 
     def __init__(
         self,
-        line: SerialLine,
+        line: ByteStream,
         protocol: DeviceProtocol[Record],
         *,
         silence: float,

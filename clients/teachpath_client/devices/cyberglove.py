@@ -9,6 +9,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import Literal
 
+from teachpath_client.devices.byte_stream import ByteStream
 from teachpath_client.devices.connection import Connection
 from teachpath_client.devices.cyberglove_wire import CYBERTOUCH, READY, SENSORS, STOP, GloveParser, period, vibration
 from teachpath_client.devices.glove_calibration import GloveCalibration
@@ -74,7 +75,7 @@ class GloveProtocol:
         self._sent_amplitude = 0
         self.amplitude: int = 0  # what the hand should feel now
 
-    def set_up(self, line: SerialLine) -> GloveParser:
+    def set_up(self, line: ByteStream) -> GloveParser:
         """Set the glove up; raises ClientError when it does not answer or is not the glove it should be."""
         line.write(STOP)
         end = self._clock() + ANSWER_TIMEOUT
@@ -97,7 +98,7 @@ class GloveProtocol:
         self._sent_amplitude = 0
         return GloveParser(sensors)
 
-    def poll(self, line: SerialLine) -> float:
+    def poll(self, line: ByteStream) -> float:
         """Ask for a sample and change the vibration when it is time to; return the seconds until the next time."""
         if self._settings.touch != "off" and self.amplitude != self._sent_amplitude:
             self._sent_amplitude = self.amplitude
@@ -108,19 +109,19 @@ class GloveProtocol:
             line.write(b"G" if self._settings.format == "binary" else b"g")
         return self._polling.wait
 
-    def shut_down(self, line: SerialLine) -> None:
+    def shut_down(self, line: ByteStream) -> None:
         """End the stream and the vibration."""
         line.write(STOP)
         if self._settings.touch != "off":
             line.write(vibration(0))
 
-    def _write(self, line: SerialLine, letter: bytes, value: int) -> None:
+    def _write(self, line: ByteStream, letter: bytes, value: int) -> None:
         self._exchange(line, letter + bytes([value]), letter, 0)
 
-    def _ask(self, line: SerialLine, question: bytes, size: int) -> bytes:
+    def _ask(self, line: ByteStream, question: bytes, size: int) -> bytes:
         return self._exchange(line, question, question, size)
 
-    def _exchange(self, line: SerialLine, said: bytes, echo: bytes, size: int) -> bytes:
+    def _exchange(self, line: ByteStream, said: bytes, echo: bytes, size: int) -> bytes:
         """Send a command until it is answered by its echo, `size` bytes and a zero; return the bytes."""
         for _ in range(ATTEMPTS):
             line.write(said)

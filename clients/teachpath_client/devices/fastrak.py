@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from teachpath_client.devices.byte_stream import ByteStream
 from teachpath_client.devices.connection import Connection
 from teachpath_client.devices.fastrak_wire import (
     ITEMS,
@@ -71,7 +72,7 @@ class FastrakProtocol:
         self._settings, self._clock = settings, clock
         self._polling = Polling(settings.rate, clock)
 
-    def set_up(self, line: SerialLine) -> BinaryParser | AsciiParser:
+    def set_up(self, line: ByteStream) -> BinaryParser | AsciiParser:
         """Set the device up; raises ClientError when it does not answer or does not take the unit or the format."""
         wanted = (self._settings.format == "binary", self._settings.unit == "cm")
         said = None
@@ -96,7 +97,7 @@ class FastrakProtocol:
             f"says that it sends {'cm' if said[1] else 'in'} in {'binary' if said[0] else 'ascii'}; power-cycle it"
         )
 
-    def poll(self, line: SerialLine) -> float:
+    def poll(self, line: ByteStream) -> float:
         """Ask for a record when it is time to; return the seconds until the next time."""
         if self._settings.mode == "continuous":
             return READ_TIMEOUT
@@ -104,7 +105,7 @@ class FastrakProtocol:
             line.write(b"P")
         return self._polling.wait
 
-    def shut_down(self, line: SerialLine) -> None:
+    def shut_down(self, line: ByteStream) -> None:
         """End the continuous output."""
         line.write(b"c")
 
@@ -124,12 +125,12 @@ class FastrakProtocol:
             if station not in settings.stations:
                 yield f"l{station},0\r".encode()
 
-    def _drain(self, line: SerialLine) -> None:
+    def _drain(self, line: ByteStream) -> None:
         end = self._clock() + self._settings.pause
         while (left := end - self._clock()) > 0:
             line.read(left)
 
-    def _status(self, line: SerialLine) -> tuple[bool, bool] | None:
+    def _status(self, line: ByteStream) -> tuple[bool, bool] | None:
         heard, end = b"", self._clock() + max(0.5, 20 * STATUS_SIZE / line.baud)
         while (left := end - self._clock()) > 0:
             heard += line.read(left)
