@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import queue
 import random
 import subprocess
 import sys
@@ -19,11 +20,13 @@ from teachpath.io.store.store import Store
 from tests.contract.job_program import job_service
 from tests.contract.rows import a_job
 from tests.postgres import serving
-from tests.waiting import HANG
+from tests.waiting import HANG, wait_until
 
 TASK = "lift"
 REPORTS = 15  # of each job, 20 ms apart
-PAUSE = 0.5, 3.0  # [s] between two kills, at least and at most
+# Of the time that a service takes to start, between two kills, at least and at most: the process of its jobs takes as
+# long again, however busy the machine is, and one of four lives for four kills.
+PAUSE = 0.1, 1.0
 STUCK = 2 * DEAD_AFTER + HANG  # [s] without any job that ends
 
 
@@ -36,21 +39,23 @@ class Program:
 
     def _start(self) -> None:
         self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
-        self._started = threading.Event()
+        self._began, self._started = time.monotonic(), queue.SimpleQueue[float]()
+        self.start_seconds = 0.0  # that it took; 0: it has not said yet that it works
         self._reader = threading.Thread(target=self._read, args=(self._process, self._started), daemon=True)
         self._reader.start()
 
-    def _read(self, process: subprocess.Popen[str], started: threading.Event) -> None:
+    def _read(self, process: subprocess.Popen[str], started: queue.SimpleQueue[float]) -> None:
         assert process.stdout is not None
         with process.stdout:
             if process.stdout.readline():
-                started.set()
+                started.put(time.monotonic())
 
-    @property
     def has_started(self) -> bool:
-        """Whether it has said that it works."""
+        """Tell whether it has said that it works."""
         assert self._process.poll() is None, "a service has ended by itself"
-        return self._started.is_set()
+        if not self._started.empty():
+            self.start_seconds = self._started.get() - self._began
+        return self.start_seconds > 0.0
 
     def kill(self) -> None:
         self._process.kill()
@@ -64,15 +69,19 @@ class Program:
 
 def kill_until_done(store: Store, programs: list[Program], chance: random.Random) -> int:
     """Kill services that have said that they work, until all jobs have ended; return how often."""
+    wait_until(lambda: all(program.has_started() for program in programs), "every service works")
     kills, left, since = 0, len(store.jobs(unfinished=True)), time.monotonic()
+    pause = max(program.start_seconds for program in programs)
     while unfinished := store.jobs(unfinished=True):
         if len(unfinished) < left:
             left, since = len(unfinished), time.monotonic()
         elif time.monotonic() - since > STUCK:
-            sys.exit(f"no job has ended for {STUCK:g} s: {unfinished}")
-        time.sleep(chance.uniform(*PAUSE))
-        if started := [program for program in programs if program.has_started]:
-            chance.choice(started).kill_and_restart()
+            sys.exit(f"no job has ended for {STUCK:g} s, {left} are left: {unfinished[:3]}")
+        time.sleep(pause * chance.uniform(*PAUSE))
+        if started := [program for program in programs if program.has_started()]:
+            chosen = chance.choice(started)
+            pause = chosen.start_seconds
+            chosen.kill_and_restart()
             kills += 1
     return kills
 
