@@ -10,7 +10,9 @@ import numpy as np
 from teachpath.motion.arm.held_object import HELD_BODY, GraspPointMotion, RigidBody, UnknownGrasp
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.mjcf import write_mjcf
+from teachpath.motion.arm.mjcf_shapes import mesh_asset, shape_attributes
 from teachpath.motion.arm.model import Arm
+from teachpath.motion.arm.object_mass import object_mass
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.arm.torque_variation import MovingMass, TorqueVariation
 from teachpath.records import Scene, Shape
@@ -36,7 +38,7 @@ class Dynamics:
         self.carried_mass: float = 0.0
         self._grasp: UnknownGrasp | None = None
         if carried is not None:
-            body = RigidBody.of_shape(carried)
+            body = solid_body(carried)
             self.carried_mass = body.mass
             if grasp_pose is None:
                 self._grasp = UnknownGrasp(body)
@@ -172,3 +174,12 @@ def _link_of(model: mujoco.MjModel, body: int) -> int:
     while body and not model.body_jntnum[body]:
         body = model.body_parentid[body]
     return int(model.body_jntadr[body]) + 1 if body else 0
+
+
+def solid_body(shape: Shape) -> RigidBody:
+    """Return how an object resists that is solid, of one density."""
+    meshes = mesh_asset(shape, HELD_BODY) if shape.kind == "mesh" else ""
+    geom = f'<geom {shape_attributes(shape, HELD_BODY)} mass="{object_mass(shape)!r}"/>'
+    body = f"<worldbody><body><freejoint/>{geom}</body></worldbody>"
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><asset>{meshes}</asset>{body}</mujoco>")
+    return RigidBody(float(model.body_mass[1]), model.body_ipos[1], model.body_iquat[1], model.body_inertia[1])

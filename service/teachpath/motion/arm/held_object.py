@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-import mujoco
 import numpy as np
 
-from teachpath.motion.arm.mjcf_shapes import mesh_asset, numbers, shape_attributes
-from teachpath.motion.arm.object_mass import object_mass
+from teachpath.motion.arm.mjcf_shapes import numbers
 from teachpath.motion.arm.puma560 import Array
-from teachpath.records import Shape
 
 HELD_BODY: Final = "held"
 MAX_GRASP_DISTANCE: Final = 0.05  # [m] from grasp point to object's centre; an object farther off is not in the gripper
@@ -33,15 +30,6 @@ class RigidBody:
     center: Array
     axes: Array
     moments: Array
-
-    @classmethod
-    def of_shape(cls, shape: Shape) -> RigidBody:
-        """Take an object as solid, of one density."""
-        meshes = mesh_asset(shape, HELD_BODY) if shape.kind == "mesh" else ""
-        geom = f'<geom {shape_attributes(shape, HELD_BODY)} mass="{object_mass(shape)!r}"/>'
-        body = f"<worldbody><body><freejoint/>{geom}</body></worldbody>"
-        model = mujoco.MjModel.from_xml_string(f"<mujoco><asset>{meshes}</asset>{body}</mujoco>")
-        return cls(float(model.body_mass[1]), model.body_ipos[1], model.body_iquat[1], model.body_inertia[1])
 
     def write_mjcf(self, pose: Array) -> str:
         """Write it as a body at a pose (4, 4), without any solid."""
