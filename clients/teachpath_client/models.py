@@ -720,12 +720,14 @@ class Identity:
         name: yours; empty where it does not ask.
         capabilities: what you may do.
         provider: at which people sign in; empty: with a password.
+        groups: yours, as the proxy tells them where `mode` is `proxy`.
     """
 
     mode: str
     name: str
     capabilities: list[Capability]
     provider: str = ""
+    groups: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

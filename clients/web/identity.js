@@ -25,11 +25,13 @@ export class IdentityControl {
     const label = element("label", { for: "sign-in-password" }, "Password");
     this.fields = [name, element("p", { class: "field" }, label, this.password)];
     this.button = element("button", { type: "submit", class: "primary" }, "Sign in");
+    this.heading = element("h2", {}, "Sign in");
+    this.hint = hint("");
     this.form = element(
       "form",
       {},
-      element("h2", {}, "Sign in"),
-      hint("This station asks who uses it. The arm is stopped by everybody, signed in or not."),
+      this.heading,
+      this.hint,
       ...this.fields,
       element("p", { class: "buttons" }, this.button),
       this.refusal,
@@ -110,9 +112,15 @@ export class IdentityControl {
     document.documentElement.dataset.signedIn = String(!isMissing);
     this.place.hidden = !isMissing;
     this.who.hidden = identity.mode === "none" || isMissing;
-    this.who.replaceChildren(identity.name, element("button", { type: "button" }, "Sign out"));
-    for (const field of this.fields) field.hidden = identity.provider !== "";
-    for (const input of [this.name, this.password]) input.disabled = identity.provider !== "";
+    const isProxied = identity.mode === "proxy"; // people sign in and out there
+    const hasPasswords = !isProxied && identity.provider === "";
+    this.who.replaceChildren(identity.name, ...(isProxied ? [] : [element("button", { type: "button" }, "Sign out")]));
+    if (isProxied) this.who.title = groupsSentence(identity);
+    this.heading.textContent = isProxied ? "No role here" : "Sign in";
+    this.hint.textContent = isProxied ? noRoleSentence(identity) : ASKS;
+    for (const field of this.fields) field.hidden = !hasPasswords;
+    for (const input of [this.name, this.password]) input.disabled = !hasPasswords;
+    this.button.hidden = isProxied;
     this.button.textContent = identity.provider ? `Sign in with ${identity.provider}` : "Sign in";
     if (isMissing && !this.form.isConnected) {
       this.place.append(this.form);
@@ -148,6 +156,20 @@ function takeProviderAnswer() {
   };
 }
 
+const ASKS = "This station asks who uses it. The arm is stopped by everybody, signed in or not.";
+
+/** @param {Identity} identity */
+function groupsSentence({ groups }) {
+  return groups.length ? `The proxy says that you are in: ${groups.join(", ")}.` : "The proxy names no group of yours.";
+}
+
+/** @param {Identity} identity of somebody whom the proxy has let through */
+function noRoleSentence(identity) {
+  const who = identity.name ? `The proxy says that you are ${identity.name}.` : "The proxy does not say who you are.";
+  const way = "Whoever administers the station gives a role to one of your groups. Stop works all the same.";
+  return `${who} ${groupsSentence(identity)} No role at this station follows from that. ${way}`;
+}
+
 /** @type {Record<string, string>} */
 const WORK = {
   demonstrate: "show demonstrations",
@@ -160,10 +182,13 @@ const WORK = {
  * @param {Identity} identity
  * @param {Identity["capabilities"]} needed
  */
-export function missingSentence({ name, capabilities }, needed) {
-  const missing = needed.filter((one) => !capabilities.includes(one));
+export function missingSentence(identity, needed) {
+  const missing = needed.filter((one) => !identity.capabilities.includes(one));
   if (!missing.length) return "";
   const work = missing.map((one) => WORK[one]).join(", or ");
   const roles = missing.map((one) => `“${one}”`).join(" and ");
-  return `${name} may look at this, but not ${work}: that needs the role ${roles}. Whoever administers the station gives it.`;
+  const who = identity.name || "Whoever comes through the proxy";
+  const groups = identity.mode === "proxy" ? ` ${groupsSentence(identity)}` : "";
+  const way = "Whoever administers the station gives it.";
+  return `${who} may look at this, but not ${work}: that needs the role ${roles}.${groups} ${way}`;
 }

@@ -22,6 +22,7 @@ const ANYBODY = {
   name: "",
   capabilities: ["view", "demonstrate", "teach", "operate", "administer"],
   provider: "",
+  groups: [],
 };
 
 /** @type {State} */

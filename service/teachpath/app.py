@@ -16,6 +16,7 @@ from teachpath import __version__
 from teachpath.access.access import Access
 from teachpath.access.audit import Audit
 from teachpath.access.provider_sign_in import open_provider
+from teachpath.access.proxy_people import require_roles
 from teachpath.api.events import events_router
 from teachpath.api.live_messages import StationState
 from teachpath.api.parts import Advice, Health, Parts
@@ -81,6 +82,7 @@ class Station:
     """
 
     def __init__(self, settings: Settings) -> None:
+        require_roles(settings.auth.mode, settings.proxy)
         self._provider = open_provider(settings.auth.mode, settings.oidc)
         self._lock = StationLock(Path(settings.store.data_dir))
         self.event_hub: EventHub = EventHub()
@@ -139,7 +141,9 @@ class Station:
         self.store.services.begin()
         self.audit: Audit = Audit(AuditLog(Path(settings.store.data_dir)))
         store, tokens, people = self.store, self.store.access_tokens, self.store.people
-        self.access: Access = Access(settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider)
+        self.access: Access = Access(
+            settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider, proxy=settings.proxy
+        )
         self.reader: LimitedProcess = LimitedProcess(settings.jobs)
         self.mesh_reader: LimitedProcess = LimitedProcess(settings.jobs, "reading the mesh", part="mesh reader")
         self.scenes: Scenes = Scenes(self.store.scenes, settings.scenes)

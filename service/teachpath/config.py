@@ -16,7 +16,7 @@ from typing import Any, ClassVar, get_args, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, PrivateAttr, ValidationError
 
-from teachpath.access.settings import AuthSettings, LimitSettings, OidcSettings
+from teachpath.access.settings import AuthSettings, LimitSettings, OidcSettings, ProxySettings
 from teachpath.errors import UnusableInput, UnusableSettings
 from teachpath.executor.settings import ExecutorSettings
 from teachpath.executor.teleop.settings import TeleoperationSettings
@@ -60,6 +60,7 @@ class Settings(BaseModel):
     web: WebSettings = WebSettings()
     auth: AuthSettings = AuthSettings()
     oidc: OidcSettings = OidcSettings()
+    proxy: ProxySettings = ProxySettings()
     limits: LimitSettings = LimitSettings()
     store: StoreSettings = StoreSettings()
     imports: ImportSettings = ImportSettings()

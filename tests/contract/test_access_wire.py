@@ -43,13 +43,53 @@ def test_what_a_proxy_has_passed_on_is_not_of_this_machine(desk: Desk, header: s
     refused(desk.get("/tasks", headers={header: "x"}), 403, f"a proxy has passed this on (header {header.lower()})")
 
 
-def test_a_proxy_that_leaves_a_name_that_a_client_took_names_nobody() -> None:
-    proxy = {"auth": {"mode": "proxy"}, "web": {"proxies": ["127.0.0.1"]}}
-    with stations.station(**proxy) as station, asyncio.Runner() as loop:
-        behind, two = Desk(station, loop), [("X-Forwarded-User", "anna"), ("X-Forwarded-User", "otto")]
-        refused(behind.get("/tasks", headers=two), 401, "2 headers X-Forwarded-User")
-        assert behind.get("/identity", headers=two).json()["name"] == "not signed in"
-        assert behind.get("/identity", headers=two[:1]).json()["name"] == "anna"
+@pytest.fixture(scope="module")
+def proxied() -> Iterator[Desk]:
+    settings = {"groups_header": "Remote-Groups", "view": ["lab"], "operate": ["operators"]}
+    web = {"proxies": ["127.0.0.1"]}
+    with stations.station(auth={"mode": "proxy"}, web=web, proxy=settings) as station, asyncio.Runner() as loop:
+        yield Desk(station, loop)
+
+
+@pytest.mark.parametrize("twice", ["X-Forwarded-User", "Remote-Groups"])
+def test_a_proxy_that_leaves_what_a_client_said_of_itself_names_nobody(proxied: Desk, twice: str) -> None:
+    once = [("X-Forwarded-User", "anna"), ("Remote-Groups", "lab")]
+    forged = [*once, (twice, "operators")]
+    refused(proxied.get("/tasks", headers=forged), 401, f"2 headers {twice}")
+    assert proxied.get("/identity", headers=forged).json()["name"] == "not signed in"
+    identity = proxied.get("/identity", headers=once).json()
+    assert (identity["name"], identity["capabilities"], identity["groups"]) == ("anna", ["view"], ["lab"])
+
+
+def test_groups_that_a_proxy_tells_give_their_roles_alone(proxied: Desk) -> None:
+    def ask(user: str, groups: str, **more: str) -> Response:
+        headers = {"X-Forwarded-User": user, "Remote-Groups": groups, **more}
+        return proxied.post("/lease", {}, headers=headers)
+
+    refused(
+        ask("anna", "lab"), 403, "anna may view, and this needs operate; the proxy tells its groups (Remote-Groups)"
+    )
+    refused(ask("otto", ""), 403, "otto may do nothing, and this needs operate")
+    refused(ask("otto", "students", **{"X-Forwarded-Groups": "operators"}), 403, "students; whoever administers")
+    refused(ask("", "operators"), 401, "tells groups (Remote-Groups) and no name")
+    refused(ask("anna", "operators"), 422, "body.name")  # the role is enough
+    assert proxied.post("/stop", None).status_code not in (401, 403)
+    refused(proxied.post("/session", {"name": "anna", "password": "x"}), 422, "the proxy asks who somebody is")
+
+
+def test_the_audit_log_has_what_whom_a_proxy_brings_may_do(proxied: Desk) -> None:
+    audit = proxied.station.audit
+    for groups in ("lab", "lab", "lab,operators", ""):
+        proxied.get("/tasks", headers={"X-Forwarded-User": "berta", "Remote-Groups": groups})
+    audit.start()
+    audit.stop()  # has written what has come
+    came = "comes through the proxy; groups: "
+    written = [(each.action, each.answer) for each in audit.log.entries() if each.who == "berta"]
+    assert [each for each in written if each[0].startswith(came)] == [
+        (f"{came}lab", "may view"),
+        (f"{came}lab, operators", "may view, demonstrate, operate"),
+        (f"{came}none", "may do nothing"),
+    ]
 
 
 @pytest.mark.parametrize("body", BODIES)

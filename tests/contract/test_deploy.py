@@ -85,7 +85,7 @@ def test_oauth2_proxy_asks_nginx_s_station_and_its_cookie_is_of_the_host_alone()
     said = tomllib.loads((DEPLOY / "oauth2-proxy.cfg").read_text())
     assert f"proxy_pass http://{said['http_address']};" in (DEPLOY / "nginx-oauth2.conf").read_text()
     assert said["reverse_proxy"]
-    assert said["set_xauthrequest"]  # else nginx would hear no name
+    assert said["set_xauthrequest"]  # else nginx would hear neither name nor groups
     assert said["code_challenge_method"] == "S256"
     assert (said["cookie_secure"], said["cookie_httponly"]) == (True, True)
     assert said["cookie_name"].startswith("__Host-")
@@ -97,3 +97,11 @@ def test_a_proxy_tells_the_address_that_it_sees_and_not_what_it_was_told(name: s
     said = (DEPLOY / name).read_text()
     assert re.search(r"X-Forwarded-For (\$remote_addr;|\{remote_host\})", said)
     assert "127.0.0.1:8765" in said
+
+
+@pytest.mark.parametrize("name", ["nginx.conf", "nginx-oauth2.conf", "Caddyfile"])
+def test_a_proxy_hands_on_neither_name_nor_groups_of_which_a_client_tells(name: str) -> None:
+    said = re.sub(r"#.*", "", (DEPLOY / name).read_text())
+    for header in ("User", "Groups"):
+        assert len(re.findall(rf"(proxy_set_header |header_up -?)X-Forwarded-{header}\b", said)) == 1
+    assert "$remote_user" not in said or "auth_basic " in said  # else it is what anybody claims

@@ -53,7 +53,7 @@ def session(guarded: Guarded) -> dict[str, str]:
 def test_a_session_begins_with_the_password_and_says_who_it_is(guarded: Guarded) -> None:
     answer = sign_in(guarded)
     may = {"capabilities": ["view", "demonstrate", "teach"]}
-    assert answer.json() == {"mode": "token", "name": "anna", "provider": ""} | may
+    assert answer.json() == {"mode": "token", "name": "anna", "provider": "", "groups": []} | may
     cookie = cookie_of(answer)
     assert (cookie["name"], cookie["path"], cookie["samesite"]) == (LOOPBACK_COOKIE, "/", "strict")
     assert cookie["httponly"]

@@ -76,7 +76,13 @@ def test_a_person_comes_back_with_a_session_and_the_roles_of_the_groups(
     guarded: Guarded, provider: EmulatedProvider
 ) -> None:
     answer, headers = session(guarded)
-    me = {"mode": "oidc", "name": "anna", "capabilities": ["view", "demonstrate", "teach"], "provider": "Lab"}
+    me = {
+        "mode": "oidc",
+        "name": "anna",
+        "capabilities": ["view", "demonstrate", "teach"],
+        "provider": "Lab",
+        "groups": [],
+    }
     assert answer.json() == me
     assert guarded.desk.get("/identity", headers=headers).json() == me
     refused(guarded.desk.get("/tokens", headers=headers), 403, "this needs administer")

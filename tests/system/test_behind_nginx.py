@@ -27,7 +27,9 @@ from tests.waiting import HANG, wait_until
 pytestmark = pytest.mark.system
 
 DEPLOY = Path(__file__).parents[2] / "deploy"
-PASSED = {"Cookie": "passed"}  # of whom has signed in at the emulated oauth2-proxy
+# Who has signed in at the emulated oauth2-proxy, by cookie, and the groups that it tells.
+GROUPS = {"anna": "teachers,cell-3-operators", "otto": "students"}
+PASSED = {"Cookie": "login=anna"}
 ABSENT = "no nginx; get it with: sudo apt-get install nginx-light"
 # What a distribution's own configuration has around a file of conf.d/, with all that nginx writes in its folder.
 AROUND = """daemon off;
@@ -45,7 +47,12 @@ http {{
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """A service that believes the proxy."""
-    settings = {"TEACHPATH_AUTH__MODE": "proxy", "TEACHPATH_WEB__PROXIES": '["127.0.0.1"]'}
+    settings = {
+        "TEACHPATH_AUTH__MODE": "proxy",
+        "TEACHPATH_WEB__PROXIES": '["127.0.0.1"]',
+        "TEACHPATH_PROXY__DEMONSTRATE": '["lab", "teachers"]',
+        "TEACHPATH_PROXY__OPERATE": '["cell-3-operators"]',
+    }
     with Service(tmp_path_factory.mktemp("station") / "data", **settings) as service:
         yield service
 
@@ -54,10 +61,11 @@ class OAuth2Proxy(BaseHTTPRequestHandler):
     """What nginx asks of oauth2-proxy."""
 
     def do_GET(self) -> None:
-        passed = self.headers.get("Cookie") == PASSED["Cookie"]
-        self.send_response({"/oauth2/auth": 202 if passed else 401}.get(self.path, 200))
-        if passed:
-            self.send_header("X-Auth-Request-Preferred-Username", "anna")
+        name = self.headers.get("Cookie", "").removeprefix("login=")
+        self.send_response({"/oauth2/auth": 202 if name in GROUPS else 401}.get(self.path, 200))
+        if name in GROUPS:
+            self.send_header("X-Auth-Request-Preferred-Username", name)
+            self.send_header("X-Auth-Request-Groups", GROUPS[name])
         self.send_header("Content-Length", "0")
         self.end_headers()
 
@@ -81,8 +89,9 @@ def addresses(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Ite
             "127.0.0.1:8765": service.url.removeprefix("http://"),
         }
         asked = {"127.0.0.1:4180": f"127.0.0.1:{asking.server_port}"}
+        lab = {'X-Forwarded-User ""': "X-Forwarded-User bench", 'X-Forwarded-Groups ""': "X-Forwarded-Groups lab"}
         samples = [
-            filled("nginx.conf", here | {"listen 443": f"listen 127.0.0.1:{first}"}),
+            filled("nginx.conf", here | lab | {"listen 443": f"listen 127.0.0.1:{first}"}),
             filled("nginx-oauth2.conf", here | asked | {"listen 443": f"listen 127.0.0.1:{second}"}),
         ]
         configuration = folder / "nginx.conf"
@@ -181,3 +190,44 @@ def test_oauth2_proxy_is_asked_before_everything_but_a_stop(addresses: dict[str,
     with pytest.raises(InvalidStatus) as found, connect(events, ssl=trusting):
         pass
     assert found.value.response.status_code == 401
+
+
+def test_roles_follow_from_the_groups_that_oauth2_proxy_tells(addresses: dict[str, str]) -> None:
+    names = ("X-Forwarded-User", "X-Forwarded-Groups", "X_Forwarded_Groups", "X-Auth-Request-Groups")
+    forged = dict.fromkeys(names, "cell-3-operators")
+    otto = {"Cookie": "login=otto"} | forged
+    with httpx.Client(base_url=addresses["login"], verify=False, trust_env=False, timeout=HANG) as client:
+        anna = client.get("api/v1/identity", headers=PASSED | forged).json()
+        assert (anna["name"], anna["groups"]) == ("anna", ["teachers", "cell-3-operators"])
+        assert anna["capabilities"] == ["view", "demonstrate", "operate"]
+        assert client.get("api/v1/identity", headers=otto).json()["capabilities"] == []
+        refused = client.post("api/v1/lease", json={}, headers=otto)
+        assert refused.status_code == 403
+        assert "(X-Forwarded-Groups): students; whoever administers" in refused.json()["detail"]
+        behind = client.get(f"{addresses['path']}api/v1/identity", headers=forged).json()
+        assert (behind["name"], behind["groups"]) == ("bench", ["lab"])
+
+
+def test_the_page_says_which_groups_it_was_told_and_what_is_missing(browser: Any, addresses: dict[str, str]) -> None:
+    def opened(name: str) -> Any:
+        context = browser.new_context(ignore_https_errors=True)
+        context.add_cookies([{"name": "login", "value": name, "url": addresses["login"]}])
+        page = context.new_page()
+        page.set_default_timeout(1000 * HANG)
+        page.goto(addresses["login"])
+        return page
+
+    page = opened("otto")
+    page.wait_for_selector("#sign-in form")
+    assert "you are otto. The proxy says that you are in: students. No role" in page.inner_text("#sign-in")
+    assert page.is_visible("#stop")
+    assert not any(page.is_visible(each) for each in ("main", "#sign-in input", "#sign-in button"))
+    page.context.close()
+    page = opened("anna")
+    page.wait_for_function("() => teachpath.state().connection === 'live'")
+    assert page.inner_text("#identity") == "anna"  # who signs out at the proxy, and not here
+    assert page.get_attribute("#identity", "title") == "The proxy says that you are in: teachers, cell-3-operators."
+    page.click("#tab-edit")
+    page.wait_for_selector("#panel-edit .missing")
+    assert "the role “teach”. The proxy says that you are in: teachers," in page.inner_text("#panel-edit .missing")
+    page.context.close()

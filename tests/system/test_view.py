@@ -116,7 +116,7 @@ def documents(count: int) -> dict[str, Any]:
         paths=tuple(way(k) for k in (1, 2, 3)),
     )
     return {
-        "identity": {"mode": "none", "name": "", "capabilities": list(Capability), "provider": ""},
+        "identity": {"mode": "none", "name": "", "capabilities": list(Capability), "provider": "", "groups": []},
         "tasks": [to_document(Task("t", "paper", "identity", 1))],
         "scenes": [to_document(paper_scene())],
         "executions": [],

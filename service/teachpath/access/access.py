@@ -9,8 +9,9 @@ from datetime import UTC, datetime
 from typing import Final, Literal, Protocol
 
 from teachpath.access.provider_sign_in import Provider, ProviderSignIn
+from teachpath.access.proxy_people import NOT_FORWARDED, Forwarded, ProxyPeople
 from teachpath.access.sessions import PeopleTable, Sessions
-from teachpath.access.settings import AuthSettings, OidcSettings
+from teachpath.access.settings import AuthSettings, OidcSettings, ProxySettings
 from teachpath.access.tokens import MAX_LENGTH, digest_of
 from teachpath.errors import NotSignedIn
 from teachpath.periodic_thread import PeriodicThread
@@ -18,8 +19,6 @@ from teachpath.records import AccessToken, Capability, Subject
 
 REFRESH_INTERVAL: Final = 1.0  # [s] after which a token that was made or revoked by another process counts
 USE_INTERVAL_NS: Final = 60 * 10**9  # between two notes of the use of one token
-
-MAX_NAME_LENGTH: Final = 64  # characters of a name that a proxy gives
 
 ANYBODY: Final = Subject("", frozenset(Capability))  # where the station does not ask
 STRANGER: Final = Subject("not signed in", frozenset())  # a name that no token can have
@@ -49,6 +48,7 @@ class Access:
         now_ns: the time.
         oidc: settings of the provider at which people sign in.
         provider: the same; None: people sign in with passwords.
+        proxy: what those may do whom a proxy brings.
     """
 
     def __init__(
@@ -59,12 +59,14 @@ class Access:
         now_ns: Callable[[], int] = time.time_ns,
         oidc: OidcSettings | None = None,
         provider: Provider | None = None,
+        proxy: ProxySettings | None = None,
     ) -> None:
         self.mode: Literal["none", "token", "oidc", "proxy"] = settings.mode
         self.sessions: Sessions = Sessions(settings, people, now_ns, oidc.issuer if oidc and provider else "")
         self.provider: ProviderSignIn | None = None
         if oidc and provider:
             self.provider = ProviderSignIn(oidc, provider, self.sessions, now_ns)
+        self.proxy: ProxyPeople | None = ProxyPeople(proxy or ProxySettings()) if settings.mode == "proxy" else None
         self._table, self._now_ns = table, now_ns
         self._tokens: dict[str, AccessToken] = {}
         self._used: dict[str, int] = {}
@@ -103,21 +105,21 @@ class Access:
             if not _holds(tokens.get(credential), now) and not self.sessions.holds(credential):
                 end()
 
-    def subject(self, authorization: Sequence[str], session: str = "", forwarded_user: str = "") -> Subject:
+    def subject(self, authorization: Sequence[str], session: str = "", forwarded: Forwarded = NOT_FORWARDED) -> Subject:
         """Return who sends a request.
 
         Args:
             authorization: every header of that name that it has.
             session: secret of a session, in its cookie; a token goes before.
-            forwarded_user: who it is as a proxy says.
+            forwarded: who it is as a proxy says.
 
         Raises:
             NotSignedIn: nobody who is known; the sentence has the way out.
         """
         if self.mode == "none":
             return ANYBODY
-        if self.mode == "proxy":
-            return Subject("".join(filter(str.isprintable, forwarded_user))[:MAX_NAME_LENGTH], ANYBODY.capabilities)
+        if self.proxy:
+            return self.proxy.subject(forwarded)
         if session and not authorization:
             return self.sessions.subject(session)
         token = self._known(_token_in(authorization))
@@ -130,6 +132,17 @@ class Access:
             with self._lock:
                 self._used[token.digest] = now
         return Subject(token.name, token.capabilities, token.digest)
+
+    def refusal(self, subject: Subject, lacking: Sequence[Capability]) -> str:
+        """Say what a subject may not do, and how it comes to the role that it lacks."""
+        may, needed = ", ".join(sorted(subject.capabilities)) or "do nothing", lacking[0]
+        way_out = (
+            self.proxy.way_out(subject, needed)
+            if self.proxy
+            else f"whoever administers the station makes a token for it: teachpath token create --role {needed.value}"
+        )
+        who = subject.name or "whoever this is"
+        return f"{who} may {may}, and this needs {' and '.join(lacking)}; {way_out}"
 
     def call_at_end(self, subject: Subject, end: Callable[[], object]) -> Callable[[], None]:
         """Call `end`, from any thread, when a subject is known no longer; return what forgets that."""

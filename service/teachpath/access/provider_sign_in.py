@@ -13,6 +13,7 @@ from typing import Any, Final, Protocol
 from urllib.parse import urlencode
 
 from teachpath.access.attempts import Attempts
+from teachpath.access.proxy_people import listed, roles_of
 from teachpath.access.sessions import NS, Sessions
 from teachpath.access.settings import OidcSettings
 from teachpath.access.tokens import MAX_LENGTH, digest_of, new_secret
@@ -171,10 +172,10 @@ class ProviderSignIn:
             )
         groups = claims.get(self._settings.groups_claim, [])
         groups = [groups] if isinstance(groups, str) else groups if isinstance(groups, list) else []
-        roles = tuple(role for role in Capability if any(g in groups for g in getattr(self._settings, role.value)))
+        roles = roles_of(self._settings, groups)
         if not roles:
             raise NotAllowed(
-                f"{self.name} knows {name}, but no group of {name} ({self._settings.groups_claim}: {_listed(groups)}) "
+                f"{self.name} knows {name}, but no group of {name} ({self._settings.groups_claim}: {listed(groups)}) "
                 "has a role here; whoever administers the station names one with oidc.view, oidc.operate, ..."
             )
         return Person(name, roles, "", now_ns, now_ns, self._settings.issuer, subject)
@@ -212,7 +213,3 @@ def open_provider(mode: str, settings: OidcSettings, now: Callable[[], float] = 
 def _challenge(verifier: str) -> str:
     """Return the challenge of a verifier by the method S256 (RFC 7636, 4.2)."""
     return base64.urlsafe_b64encode(hashlib.sha256(verifier.encode()).digest()).rstrip(b"=").decode()
-
-
-def _listed(groups: list[Any]) -> str:
-    return ", ".join(str(group)[:60] for group in groups[:8]) or "none"

@@ -13,7 +13,7 @@ class AuthSettings:
     """How the station tells who asks."""
 
     # none: asks nobody, answers this machine alone; token: programs show tokens, people sign in with passwords; oidc:
-    # programs show tokens, people sign in at a provider ([oidc]); proxy: web.proxies ask
+    # programs show tokens, people sign in at a provider ([oidc]); proxy: web.proxies ask, and tell the groups ([proxy])
     mode: Literal["none", "token", "oidc", "proxy"] = "none"
     # [s] after which a session ends in which nothing was asked
     session_idle: Annotated[float, Ge(60), Le(604_800)] = 3600.0
@@ -44,6 +44,24 @@ class OidcSettings:
     # claim of the ID token that has the groups of a person
     groups_claim: str = "groups"
     # groups whose people have the role view; who is in no group that is named has none, and is refused
+    view: tuple[str, ...] = ()
+    # groups whose people have the role demonstrate
+    demonstrate: tuple[str, ...] = ()
+    # groups whose people have the role teach
+    teach: tuple[str, ...] = ()
+    # groups whose people have the role operate
+    operate: tuple[str, ...] = ()
+    # groups whose people have the role administer
+    administer: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ProxySettings:
+    """What those may do whom a proxy brings, where auth.mode is proxy."""
+
+    # header in which the proxy tells the groups of a person, with commas between them; it sets or removes it always
+    groups_header: str = "X-Forwarded-Groups"
+    # groups whose people have the role view, * for whoever comes through; who is in no group that is named has none
     view: tuple[str, ...] = ()
     # groups whose people have the role demonstrate
     demonstrate: tuple[str, ...] = ()

@@ -12,11 +12,11 @@ from fastapi.security.base import SecurityBase
 from starlette.requests import HTTPConnection, Request
 
 from teachpath.access.access import STRANGER, Access
+from teachpath.access.proxy_people import FORWARDED_USER, NOT_FORWARDED, Forwarded
 from teachpath.api.middleware import SAFE_METHODS
 from teachpath.api.session_cookie import read_cookie
 from teachpath.errors import NotAllowed, NotSignedIn
 from teachpath.records import Capability, Subject
-from teachpath.web.forwarded import FORWARDED_USER
 
 SUBJECT: Final = "teachpath.subject"  # where the scope of a connection has who sends it
 MAX_HEADER_LENGTH: Final = 64  # characters of a name or a token of control
@@ -50,16 +50,11 @@ async def authorize(
     """
     access: Access = connection.app.state.access
     session = _session(connection, access)
-    subject = connection.scope[SUBJECT] = access.subject(authorization, session, _forwarded_user(connection, access))
+    subject = connection.scope[SUBJECT] = access.subject(authorization, session, _forwarded(connection, access))
     if session:
         _require_origin(connection)
-    lacking = [name for name in needed.scopes if Capability(name) not in subject.capabilities]
-    if lacking:
-        may = ", ".join(sorted(subject.capabilities)) or "do nothing"
-        raise NotAllowed(
-            f"{subject.name} may {may}, and this needs {' and '.join(lacking)}; whoever administers the station makes "
-            f"a token for it: teachpath token create --role {lacking[0]}"
-        )
+    if lacking := [one for one in map(Capability, needed.scopes) if one not in subject.capabilities]:
+        raise NotAllowed(access.refusal(subject, lacking))
 
 
 async def require_access(request: Request) -> None:
@@ -84,7 +79,7 @@ def identify(connection: HTTPConnection, access: Access) -> Subject:
     try:
         authorization = connection.headers.getlist("authorization")
         session = _session(connection, access)
-        return access.subject(authorization, session, _forwarded_user(connection, access))
+        return access.subject(authorization, session, _forwarded(connection, access))
     except NotSignedIn:
         return STRANGER
 
@@ -96,12 +91,17 @@ def _session(connection: HTTPConnection, access: Access) -> str:
     return read_cookie(connection)
 
 
-def _forwarded_user(connection: HTTPConnection, access: Access) -> str:
-    """Return who somebody is as the proxy says; a proxy that adds a name to the one that a client sent says nothing."""
-    names = connection.headers.getlist(FORWARDED_USER)
-    if len(names) > 1 and access.mode == "proxy":
-        raise NotSignedIn(f"the proxy hands on {len(names)} headers X-Forwarded-User; let it set one in their place")
-    return names[0] if names else ""
+def _forwarded(connection: HTTPConnection, access: Access) -> Forwarded:
+    """Return whom a proxy brings; one that adds its word to what a client has sent says nothing."""
+    if access.proxy is None:
+        return NOT_FORWARDED
+    said = []
+    for name in (FORWARDED_USER, access.proxy.header):
+        values = connection.headers.getlist(name)
+        if len(values) > 1:
+            raise NotSignedIn(f"the proxy hands on {len(values)} headers {name}; let it set one in their place")
+        said.append(values[0] if values else "")
+    return Forwarded(*said)
 
 
 def _require_origin(connection: HTTPConnection) -> None:

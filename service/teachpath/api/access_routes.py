@@ -51,12 +51,14 @@ class Identity:
         name: yours; empty where it does not ask.
         capabilities: what you may do.
         provider: at which people sign in; empty: with a password.
+        groups: yours, as the proxy tells them where `mode` is `proxy`.
     """
 
     mode: Literal["none", "token", "oidc", "proxy"]
     name: str
     capabilities: tuple[Capability, ...]
     provider: str = ""
+    groups: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +118,8 @@ def access_router(parts: Parts) -> APIRouter:
             raise UnusableInput(
                 "this station asks nobody who he is (auth.mode is none); there is nothing to sign in to"
             )
+        if access.mode == "proxy":
+            raise UnusableInput("the proxy asks who somebody is (auth.mode is proxy); sign in there")
         if access.provider:
             raise UnusableInput(f"people sign in at {access.provider.name} here (auth.mode is oidc), on the page")
         address = request.client.host if request.client else ""
@@ -162,7 +166,8 @@ def access_router(parts: Parts) -> APIRouter:
 def identity_of(access: Access, subject: Subject) -> Identity:
     """Return who a subject is at a station."""
     capabilities = tuple(c for c in Capability if c in subject.capabilities)
-    return Identity(access.mode, subject.name, capabilities, access.provider.name if access.provider else "")
+    provider = access.provider.name if access.provider else ""
+    return Identity(access.mode, subject.name, capabilities, provider, subject.groups)
 
 
 def _listed(token: AccessToken) -> ListedToken:

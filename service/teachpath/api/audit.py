@@ -3,33 +3,41 @@
 from __future__ import annotations
 
 import json
+from collections import OrderedDict
 from typing import Final
 
 from fastapi import APIRouter, Response
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from teachpath.access.access import STRANGER
 from teachpath.access.audit import Audit
+from teachpath.access.proxy_people import listed
 from teachpath.api.access import ADMINISTER, SUBJECT, signed
 from teachpath.api.answers import model_of
 from teachpath.api.middleware import SAFE_METHODS
 from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.request_numbers import ROUTINE
-from teachpath.records import AuditEntry, Subject
+from teachpath.records import AuditEntry, Capability, Subject
 
 CLAIMED: Final = "teachpath.claimed"  # where the scope of a request has whom somebody says to be who signs in
 NOTED: Final = "teachpath.noted"  # where it has what is written in the place of a body that holds a password
 SECRET: Final = ("/session", "/people")  # parts of paths whose bodies hold passwords
 REFUSED: Final = (401, 403, 408, 413, 429)  # answers that are written whatever was asked for
 MAX_BODY: Final = 1000  # bytes of an order that are written
+MAX_KNOWN: Final = 10_000  # people of a proxy of whom it is known what was written; beyond, the oldest is forgotten
 
 
 class AuditRequests:
-    """Writes who ordered what, from where, and how it was answered; a middleware around all others."""
+    """Writes who ordered what, from where, and how it was answered; a middleware around all others.
 
-    def __init__(self, app: ASGIApp, *, audit: Audit) -> None:
+    Where a proxy tells the groups of people, it writes what each may do, and again when that has changed.
+    """
+
+    def __init__(self, app: ASGIApp, *, audit: Audit, is_proxied: bool = False) -> None:
         self._app, self._audit = app, audit
+        self._arrivals = _Arrivals(audit) if is_proxied else None
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on."""
@@ -40,9 +48,30 @@ class AuditRequests:
         try:
             await self._app(scope, request.receive, request.send)
         finally:
+            if self._arrivals:
+                self._arrivals.note(scope.get(SUBJECT), request.source)
             if request.is_to_be_written:
                 action = request.action
                 self._audit.note(request.who, request.source, action, request.answer, is_refusal=request.is_refused)
+
+
+class _Arrivals:
+    """Writes whom a proxy brings and what he may do: there is no sign-in at the station that would be written."""
+
+    def __init__(self, audit: Audit) -> None:
+        self._audit = audit
+        self._known: OrderedDict[str, Subject] = OrderedDict()
+
+    def note(self, subject: Subject | None, source: str) -> None:
+        if not subject or not subject.name or subject is STRANGER or self._known.get(subject.name) == subject:
+            return
+        self._known[subject.name] = subject
+        while len(self._known) > MAX_KNOWN:
+            self._known.popitem(last=False)
+        may = ", ".join(one for one in Capability if one in subject.capabilities) or "do nothing"
+        self._audit.note(
+            subject.name, source, f"comes through the proxy; groups: {listed(subject.groups)}", f"may {may}"
+        )
 
 
 class _Request:

@@ -78,7 +78,7 @@ def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
     _add_guards(app, parts)
     app.add_middleware(RequestMetrics, registry=registry)
     app.add_middleware(RequestNumbers)
-    app.add_middleware(AuditRequests, audit=parts.audit)
+    app.add_middleware(AuditRequests, audit=parts.audit, is_proxied=parts.access.mode == "proxy")
     answer_errors(app)
     app.include_router(stops_router(parts), prefix=PREFIX)  # never refused for what comes with it
     closed = [Depends(refuse_unknown)]

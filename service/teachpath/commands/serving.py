@@ -47,6 +47,7 @@ def serving(settings: Settings) -> Iterator[Station]:
         UnusableSettings: it would be open to whoever reaches it.
     """
     from teachpath.access.loopback import require_safe_binding
+    from teachpath.access.proxy_people import FORWARDED_USER
     from teachpath.process_server import start_process_server
 
     web = settings.web
@@ -65,7 +66,8 @@ def serving(settings: Settings) -> Iterator[Station]:
         with Station(settings) as station:
             context = station.certificate.context if station.certificate else None
             station.audit.note("the service", "", f"begins: {changed_settings(settings)}", "running")
-            server = web_server(station.web, web, context)
+            identity = (FORWARDED_USER, settings.proxy.groups_header)
+            server = web_server(station.web, web, context, identity=identity)
             thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, name="web", daemon=True)
             thread.start()
             try:

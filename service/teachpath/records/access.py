@@ -119,11 +119,13 @@ class Subject:
         name: authenticated; empty where the station does not ask who somebody is.
         capabilities: what it may do.
         credential: digest of what it has shown; empty: nothing.
+        groups: of whom a proxy brings, as it tells them.
     """
 
     name: str
     capabilities: frozenset[Capability]
     credential: str = ""
+    groups: tuple[str, ...] = ()
 
 
 def capabilities_of(roles: Iterable[Capability]) -> frozenset[Capability]:

@@ -7,24 +7,26 @@ from typing import Any, Final
 
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
-FORWARDED_USER: Final = "x-forwarded-user"  # who somebody is, where auth.mode is proxy
+IDENTITY: Final = ("X-Forwarded-User", "X-Forwarded-Groups")  # headers of who a client is
 
 
 class ForwardedHeaders:
-    """Takes address and scheme of a client from a named proxy, and the client's name from nobody else.
+    """Takes address and scheme of a client from a named proxy, and the client's name and groups from nobody else.
 
     Args:
         application: of ASGI, that is told.
         proxies: addresses and networks.
+        identity: names of the headers that say who the client is.
     """
 
-    def __init__(self, application: Any, proxies: Sequence[str]) -> None:
+    def __init__(self, application: Any, proxies: Sequence[str], identity: Sequence[str]) -> None:
+        self._identity = {name.lower().encode() for name in identity}
         self._believing = ProxyHeadersMiddleware(application, list(proxies))
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Pass a connection on."""
         client = scope.get("client")
         if "headers" in scope and not (client and client[0] in self._believing.trusted_hosts):
-            kept = [(name, value) for name, value in scope["headers"] if name != FORWARDED_USER.encode()]
+            kept = [(name, value) for name, value in scope["headers"] if name not in self._identity]
             scope = {**scope, "headers": kept}
         await self._believing(scope, receive, send)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import resource
 import socket
 import ssl
+from collections.abc import Sequence
 from functools import partial
 from typing import Any, Final
 
 import uvicorn
 
 from teachpath.web.connections import ConnectionLimits, LimitedProtocol, LimitedWebSocket
-from teachpath.web.forwarded import ForwardedHeaders
+from teachpath.web.forwarded import IDENTITY, ForwardedHeaders
 from teachpath.web.settings import WebSettings
 from teachpath.web.tls import TlsOrHttp
 
@@ -44,18 +45,26 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def web_server(application: Any, settings: WebSettings, context: ssl.SSLContext | None = None) -> uvicorn.Server:
+def web_server(
+    application: Any,
+    settings: WebSettings,
+    context: ssl.SSLContext | None = None,
+    *,
+    identity: Sequence[str] = IDENTITY,
+) -> uvicorn.Server:
     """Return a server of an ASGI application, to be run on a thread with a listening socket.
 
     With a context of TLS it speaks https, and http on the same port; the scheme of a request tells them apart.
 
     Messages of WebSockets are not compressed: compressing an event for 200 pages costs more time than sending it, and
     a request waits for it.
+
+    The headers `identity`, of who a client is, are believed of `web.proxies` alone.
     """
     limits = ConnectionLimits(settings.request_timeout, allow_connections(settings.max_connections))
     protocol = partial(TlsOrHttp, context, limits) if context else partial(LimitedProtocol, limits)
     config = uvicorn.Config(
-        ForwardedHeaders(application, settings.proxies) if settings.proxies else application,
+        ForwardedHeaders(application, settings.proxies, identity) if settings.proxies else application,
         http=protocol,  # type: ignore[arg-type]  # it is called, whatever it is
         ws=partial(LimitedWebSocket, limits),  # type: ignore[arg-type]
         ws_per_message_deflate=False,

@@ -109,15 +109,6 @@ def test_a_station_that_does_not_ask_lets_everybody_do_everything() -> None:
     assert station.access.notes() == []
 
 
-def test_whoever_a_proxy_lets_through_has_the_name_that_it_says() -> None:
-    station = Station("proxy")
-    for said, name in (("anna", "anna"), ("", ""), ("a\nb", "ab"), ("x" * 99, "x" * 64)):
-        subject = station.access.subject([], forwarded_user=said)
-        assert (subject.name, subject.capabilities) == (name, set(Capability))
-    assert station.access.notes() == []
-    assert Station("none").access.subject([], forwarded_user="anna") == ANYBODY
-
-
 def test_it_is_said_when_no_token_holds(station: Station) -> None:
     station.access.refresh()
     assert "teachpath person add NAME --role administer" in station.access.notes()[0]

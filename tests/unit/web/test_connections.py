@@ -46,8 +46,8 @@ async def wait_for_ever(request: Request) -> PlainTextResponse:
 
 
 async def client(request: Request) -> PlainTextResponse:
-    who = request.headers.get("x-forwarded-user", "nobody")
-    return PlainTextResponse(f"{request.client and request.client.host} by {request.url.scheme} as {who}")
+    who, groups = (request.headers.get(f"x-forwarded-{name}", "nobody") for name in ("user", "groups"))
+    return PlainTextResponse(f"{request.client and request.client.host} by {request.url.scheme} as {who} in {groups}")
 
 
 async def port_of_client(request: Request) -> JSONResponse:
@@ -133,14 +133,15 @@ def answered(port: int, sent: bytes = b"GET / HTTP/1.1\r\nHost: x\r\nConnection:
 @pytest.mark.parametrize(
     ("proxies", "told"),
     [
-        (("10.0.0.1",), b"127.0.0.1 by http as nobody"),
-        (("127.0.0.2", "10.0.0.0/8"), b"127.0.0.1 by http as nobody"),
-        (("127.0.0.1",), b"192.0.2.7 by https as anna"),
-        ((), b"127.0.0.1 by http as anna"),  # where nobody asks for the name
+        (("10.0.0.1",), b"127.0.0.1 by http as nobody in nobody"),
+        (("127.0.0.2", "10.0.0.0/8"), b"127.0.0.1 by http as nobody in nobody"),
+        (("127.0.0.1",), b"192.0.2.7 by https as anna in lab"),
+        ((), b"127.0.0.1 by http as anna in lab"),  # where nobody asks for the name
     ],
 )
 def test_only_a_proxy_that_is_named_is_believed_for_whom_it_asks(proxies: tuple[str, ...], told: bytes) -> None:
-    said = b"X-Forwarded-For: 192.0.2.7\r\nX-Forwarded-Proto: https\r\nX-Forwarded-User: anna\r\n"
+    said = b"X-Forwarded-For: 192.0.2.7\r\nX-Forwarded-Proto: https\r\n"
+    said += b"X-Forwarded-User: anna\r\nX-Forwarded-Groups: lab\r\n"
     sent = b"GET /client HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + said + b"\r\n"
     with served(proxies=proxies) as port, opened(port, sent) as connection:
         assert rest(connection).endswith(told)
