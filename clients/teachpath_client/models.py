@@ -17,9 +17,13 @@ FistCommand = Literal["toggle", "discard"]
 
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
+JournalVerb = Literal["start", "override", "hold", "resume", "stop", "reverse", "step", "revoke", "teleoperate", "acknowledge", "acquire control", "release control", "ask control", "keep control", "unasked motion"]
+
 LimitSource = Literal["model", "operator", "default"]
 
 Phase = Literal["reach", "grasp", "transport", "release", "return"]
+
+ProcessState = Literal["running", "restarting", "ended"]
 
 RecordingState = Literal["recording", "countdown", "pausing", "paused", "lost"]
 
@@ -701,7 +705,7 @@ class Health:
     version: str
     uptime: float
     bus: BusSettings
-    processes: dict[str, str]
+    processes: dict[str, ProcessState]
     recording: list[str]
     backlog: int
     longest_backlog: int
@@ -817,7 +821,7 @@ class JournalEntry:
 
     at_ns: int
     who: str
-    verb: str
+    verb: JournalVerb
     execution: str
     answer: str
 

@@ -50,3 +50,23 @@ class LeaseAction(StrEnum):
     RELEASE = "release"
     ASK = "ask"
     KEEP = "keep"
+
+
+class JournalVerb(StrEnum):
+    """What the journal says that somebody did, or that happened by itself: commands, and of the lease all but beats."""
+
+    START = "start"
+    OVERRIDE = "override"
+    HOLD = "hold"
+    RESUME = "resume"
+    STOP = "stop"
+    REVERSE = "reverse"
+    STEP = "step"
+    REVOKE = "revoke"
+    TELEOPERATE = "teleoperate"
+    ACKNOWLEDGE = "acknowledge"
+    ACQUIRE_CONTROL = "acquire control"
+    RELEASE_CONTROL = "release control"
+    ASK_CONTROL = "ask control"
+    KEEP_CONTROL = "keep control"
+    UNASKED_MOTION = "unasked motion"  # the arm moved while nothing was under way

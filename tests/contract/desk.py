@@ -12,6 +12,7 @@ from httpx import ASGITransport, AsyncClient, Response
 from pydantic import TypeAdapter
 from starlette.routing import Match
 
+from teachpath.api.problems import WORDS
 from teachpath.app import Station
 from tests.waiting import HANG
 
@@ -50,6 +51,8 @@ class Desk:
         assert promised is not None, f"{route.name} does not say that it answers {answer.status_code}: {answer.text}"
         if answer.content:
             assert answer.headers["content-type"].partition(";")[0] in promised["content"]
+        if answer.is_error:
+            assert answer.json()["error"] in WORDS
         assert ("location" in answer.headers) == ("Location" in promised.get("headers", {}))
         if answer.is_success and (described := getattr(route, "response_model", None)) is not None:
             self.described += 1

@@ -93,7 +93,10 @@ def main() -> None:
     for methods in present["paths"].values():
         for operation in methods.values():  # every refusal has the same form
             operation["responses"] = {s: r for s, r in operation["responses"].items() if s < "400"}
-    del present["components"]["schemas"]["Refusal"]["properties"]["type"]["enum"]  # kinds of errors may come
+    schemas = present["components"]["schemas"]
+    for field in ("type", "error"):
+        del schemas["Refusal"]["properties"][field]["enum"]  # kinds of errors may come
+    del schemas["JournalVerb"]["enum"]  # so may verbs
     PROMISE.write_text(json.dumps(present, separators=(",", ":")).replace('},"', '},\n"') + "\n")
 
 

@@ -44,4 +44,6 @@ def a_job(key: str = "learn-1", **changes: object) -> Job:
 def learned() -> Learned:
     cluster = Cluster(1, ("d",), (Score("d", -1 / 3, 1, True),), (0.1, 0.2), "one")
     paths = (replace(a_path(), cluster=1), replace(a_path(), cluster=2))
-    return Learned("default", ("d",), np.array([[0.0, 1.0, 1 / 3, 2.0]]), 0.06, (cluster, cluster), paths)
+    return Learned(
+        "default", ("d",), np.array([[0.0, 1.0, 1 / 3, 2.0]]), 0.06, (cluster, replace(cluster, index=2)), paths
+    )

@@ -13,6 +13,7 @@ from teachpath.commands.serving import changed_settings
 from teachpath.config import load
 from teachpath.io.audit_log import LOG
 from teachpath.records import AuditEntry, Capability, JournalEntry, Person
+from teachpath_proto.control import JournalVerb
 from tests.contract.desk import refused
 from tests.contract.guarded import Guarded, opened
 from tests.waiting import wait_until
@@ -82,7 +83,7 @@ def test_sign_ins_are_written_with_the_name_and_without_the_password(guarded: Gu
 
 
 def test_what_the_executor_says_is_written(guarded: Guarded) -> None:
-    guarded.station.audit.note_journal(JournalEntry(1, "cell-3", "start", "e1", "done"))
+    guarded.station.audit.note_journal(JournalEntry(1, "cell-3", JournalVerb.START, "e1", "done"))
     assert entry(guarded, "start e1").source == "executor"
 
 

@@ -14,7 +14,7 @@ from teachpath.io.documents import decode, encode
 from teachpath.io.wire import decode_command, decode_lease_request, encode_lease, encode_status
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.records import CertificateQuery, ExecutorStatus, Job, JobState, JournalEntry, Plan, Scene, Signature
-from teachpath_proto.control import CommandVerb
+from teachpath_proto.control import CommandVerb, JournalVerb
 from teachpath_proto.keys import name_refusal
 from tests.contract.desk import API, Desk, csv, refused
 from tests.unit.io.test_documents import a_plan
@@ -292,7 +292,7 @@ def test_control_over_rest_is_that_of_the_executor(desk: Desk) -> None:
 
 
 def test_the_journal_is_stored_and_listed(desk: Desk) -> None:
-    entries = [JournalEntry(n, "Ada", "hold", f"execution-{n}", "done") for n in (1, 2)]
+    entries = [JournalEntry(n, "Ada", JournalVerb.HOLD, f"execution-{n}", "done") for n in (1, 2)]
     for entry in entries:
         desk.station.store.journal.write(entry)
     listed = [e for e in desk.get("/journal").json() if e["who"] == "Ada"]

@@ -12,6 +12,7 @@ from teachpath.io.store.copying import copy_rows
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.records import ExecutorStatus, JournalEntry
+from teachpath_proto.control import JournalVerb
 from tests.contract.rows import a_job, demonstration, learned
 from tests.postgres import Server
 from tests.unit.io.test_documents import a_plan
@@ -28,7 +29,7 @@ def fill(url: str, folder: Path) -> None:
         store.add_job(a_job("plan-1", kind="plan"))
         store.put_execution("e", store.finish_planning("plan-1", a_plan()), ExecutorStatus(activity="on the path"))
         for number in range(3):
-            store.journal.write(JournalEntry(number, "glove", "start", "e", "yes"))
+            store.journal.write(JournalEntry(number, "glove", JournalVerb.START, "e", "yes"))
     finally:
         store.close()
 
@@ -46,7 +47,9 @@ def test_rows_go_there_and_back(postgres: Server, tmp_path: Path) -> None:
     stores = [Store(StoreSettings(data_dir=str(tmp_path), database=url)) for url in (first, server, again)]
     before, there, back = (store.lists.demonstrations("t").entries for store in stores)
     assert before == there == back
-    stores[1].journal.write(JournalEntry(9, "glove", "stop", "e", "yes"))  # numbers go on behind those that came
+    stores[1].journal.write(
+        JournalEntry(9, "glove", JournalVerb.STOP, "e", "yes")
+    )  # numbers go on behind those that came
     assert [entry.at_ns for entry in stores[1].lists.journal().entries] == [9, 2, 1, 0]
     assert stores[1].add_demonstration(replace(before[0], id="d9")).number == 4
     for store in stores:

@@ -1,6 +1,7 @@
 """Versions of a path and operations on curves over REST: nothing is saved over anything, and no edit is lost."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,16 @@ def test_what_was_learned_is_the_first_version(desk: Desk, path: str) -> None:
         "version": first,
         "path": desk.get(f"/paths/{path}").json(),
     }
+
+
+def test_what_a_path_was_learned_from_may_be_gone(desk: Desk, path: str) -> None:
+    key = f"{path.removesuffix('-1')}-lacking".replace("run-", "learn-", 1)
+    desk.station.store.add_job(a_job(key))
+    lacking = desk.station.store.finish_learning(key, replace(learned(), clusters=learned().clusters[:1]))
+    for each in (path, f"{path[:-1]}2", f"{lacking}-2"):
+        refused(
+            desk.get(f"/paths/{each}/versions/1/adaptation-model"), 409, f"path {each} was learned from have changed"
+        )
 
 
 def test_a_saved_version_is_the_newest_and_the_others_stay(desk: Desk, path: str) -> None:

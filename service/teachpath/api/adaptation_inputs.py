@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from teachpath.api.parts import Parts
-from teachpath.errors import UnusableInput
+from teachpath.errors import Conflict
 from teachpath.io.store.rows import Run
 from teachpath.jobs.curve_assessor import Shown
 from teachpath.learning.settings import settings_of_run
@@ -21,17 +21,17 @@ def shown_for(parts: Parts, run: Run, path: LearnedPath) -> Shown:
     """Return the selected demonstrations of a path's run that are still as they were, at most 50 of them.
 
     Raises:
-        UnusableInput: none of those that the path was learned from is.
+        Conflict: none of those that the path was learned from is, or the run does not say which those were.
     """
     scores = {cluster.index: cluster.scores for cluster in run.learned.clusters}
-    own = {score.demonstration for score in scores[path.cluster] if score.selected}
+    own = {score.demonstration for score in scores.get(path.cluster, ()) if score.selected}
     selected = {score.demonstration for of in scores.values() for score in of if score.selected}
     usable = [d for d in parts.store.demonstrations(run.task) if d.is_usable and d.id in selected]
     members = _some([d for d in usable if d.id in own], MAX_DEMONSTRATIONS)
     others = _some([d for d in usable if d.id not in own], MAX_DEMONSTRATIONS - len(members))
     unchanged = _trajectories(parts, run, members)
     if not unchanged:
-        raise UnusableInput(
+        raise Conflict(
             f"the demonstrations that path {path.id} was learned from have changed or are gone; learn the task anew"
         )
     learned = parts.store.versions.get(path.id, 1)[1].curve

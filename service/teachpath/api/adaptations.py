@@ -103,7 +103,10 @@ def adaptations_router(parts: Parts) -> APIRouter:
         return answer_of(store, job)
 
     @router.get(
-        "/paths/{path}/versions/{number}/adaptation-model", response_model=model_of(AdaptationModel), dependencies=VIEW
+        "/paths/{path}/versions/{number}/adaptation-model",
+        response_model=model_of(AdaptationModel),
+        responses=refusals(409),
+        dependencies=VIEW,
     )
     def get_adaptation_model(path: str, number: int) -> Response:
         """Return what a version between other ends is computed from, so that a page can draw it while it is dragged."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from http import HTTPStatus
 from typing import Any, Final
 
 from fastapi import FastAPI, Request
@@ -16,7 +15,7 @@ from starlette.requests import ClientDisconnect
 from starlette.routing import Match
 
 from teachpath.api.access import require_access
-from teachpath.api.problems import Fault, printable, refuse
+from teachpath.api.problems import FAULT, HTTP_KINDS, KINDS, REFUSED, Fault, printable, refuse
 from teachpath.api.strict_requests import EXTRA_FIELD, unknown_field
 from teachpath.errors import (
     Conflict,
@@ -60,9 +59,14 @@ def status_of(error: TeachpathError) -> int:
     return next((STATUS[kind] for kind in type(error).__mro__ if kind in STATUS), 500)
 
 
+def kind_of(error: TeachpathError) -> str:
+    """Return the word for an error: that of the nearest ancestor in the tree."""
+    return next(kind.__name__ for kind in type(error).__mro__ if kind.__name__ in KINDS)
+
+
 def answer_to(error: TeachpathError) -> Response:
     """Return the answer that an error is."""
-    answer = refuse(status_of(error), str(error), type(error).__name__, **_evidence(error))
+    answer = refuse(status_of(error), str(error), kind_of(error), **_evidence(error))
     if isinstance(error, NotSignedIn):
         answer.headers["WWW-Authenticate"] = "Bearer"
     if isinstance(error, TooManyRequests | QueueFull):
@@ -109,7 +113,7 @@ def answer_errors(app: FastAPI) -> None:
                 await require_access(request)
             except (NotSignedIn, NotAllowed) as refusal:
                 return await answer(request, refusal)
-        kind = HTTPStatus(error.status_code).phrase
+        kind = HTTP_KINDS.get(error.status_code, REFUSED)
         return refuse(error.status_code, _sentence(request, headers, error), kind, headers=headers)
 
     @app.exception_handler(UnicodeEncodeError)
@@ -121,20 +125,20 @@ def answer_errors(app: FastAPI) -> None:
     @app.exception_handler(ClientDisconnect)
     async def note_break(_: Request, __: ClientDisconnect) -> Response:
         """Answer 400 where a body broke off; nobody may hear it, but the log has no fault of ours."""
-        return refuse(400, "the request broke off before its end; send it again", HTTPStatus.BAD_REQUEST.phrase)
+        return refuse(400, "the request broke off before its end; send it again", HTTP_KINDS[400])
 
     @app.exception_handler(OSError)
     async def name_disk(_: Request, error: OSError) -> Response:
         """Answer 507 for a full disk, and the like; raises the error again where storage has no part in it."""
         if (fault := storage_fault(error, "the data folder")) is None:
             raise error
-        return refuse(status_of(fault), str(fault), type(fault).__name__)
+        return refuse(status_of(fault), str(fault), kind_of(fault))
 
     @app.exception_handler(Exception)
     async def confess(_: Request, error: Exception) -> Response:
         """Answer 500 for an error that nobody thought of."""
         # the server logs the error itself, with its traceback
-        return refuse(500, f"this is a fault of teachpath, please report it: {error!r}", "InternalError")
+        return refuse(500, f"this is a fault of teachpath, please report it: {error!r}", FAULT)
 
 
 def _evidence(error: TeachpathError) -> dict[str, Any]:

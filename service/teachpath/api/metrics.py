@@ -15,6 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from teachpath.api.access import VIEW
 from teachpath.api.parts import Parts
 from teachpath.records import ExecutorStatus
+from teachpath.robot.processes import ProcessState
 from teachpath_proto.control import ExecutorState
 
 PLACES: Final = ("view", "events", "joints", "trackers")  # of the WebSockets
@@ -99,7 +100,7 @@ class StationMetrics(Collector):
         up = GaugeMetricFamily(
             "teachpath_process_up", "1 while a process beside the service runs.", labels=("process",)
         )
-        yield _labelled(up, {(name,): state == "running" for name, state in states.items()})
+        yield _labelled(up, {(name,): state is ProcessState.RUNNING for name, state in states.items()})
 
 
 def metrics_router(parts: Parts, registry: CollectorRegistry) -> APIRouter:

@@ -24,6 +24,7 @@ from teachpath.records import ExecutorStatus
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
 from teachpath.robot.object_poses import ObjectPoses
+from teachpath.robot.processes import ProcessState
 from teachpath.robot.programs import Programs
 from teachpath.robot.scenes import Scenes
 from teachpath.web.certificate import WebCertificate
@@ -65,7 +66,7 @@ class Health:
     version: str
     uptime: float
     bus: BusSettings
-    processes: dict[str, str]
+    processes: dict[str, ProcessState]
     recording: tuple[str, ...]
     backlog: int
     longest_backlog: int

@@ -11,6 +11,7 @@ from teachpath import __version__
 from teachpath.api.access import OPEN
 from teachpath.api.parts import Parts
 from teachpath.errors import TeachpathError, Unreachable
+from teachpath.robot.processes import ProcessState
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,8 @@ def _reasons(parts: Parts) -> Iterator[str]:
         yield str(error)
         return
     health = parts.health()
-    yield from (f"the {name} is {state}" for name, state in health.processes.items() if state != "running")
+    yield from (
+        f"the {name} is {state}" for name, state in health.processes.items() if state is not ProcessState.RUNNING
+    )
     if health.executor is None:
         yield "the executor has said nothing for over a second"

@@ -14,9 +14,25 @@ from teachpath import errors
 from teachpath.records import Failure, Version
 
 PROBLEM: Final = "application/problem+json"
-KINDS: Final = {name: kind for name, kind in vars(errors).items() if inspect.isclass(kind) and kind.__doc__}
+KINDS: Final = {
+    name: kind
+    for name, kind in vars(errors).items()
+    if inspect.isclass(kind) and issubclass(kind, errors.TeachpathError)
+}
 UNNAMED: Final = "about:blank"  # type of a refusal that says no more than its status
 TYPES: Final = {name: f"urn:teachpath:error:{name}" for name in KINDS}
+
+# Kinds of refusals that no error of the tree is: of HTTP alone, of the service as a whole, and of its faults.
+HTTP_KINDS: Final = {
+    400: "Bad Request",
+    404: "Not Found",
+    405: "Method Not Allowed",
+    408: "Request Timeout",
+    413: "Request Entity Too Large",
+}
+REFUSED: Final = "Refused"
+FAULT: Final = "InternalError"
+WORDS: Final = (*TYPES, *HTTP_KINDS.values(), REFUSED, FAULT)
 
 # What a status says of any operation.
 MEANINGS: Final = {
@@ -51,7 +67,7 @@ class Refusal(BaseModel):
     title: str = Field(description="the kind of the error in words, always the same")
     status: int = Field(description="of HTTP")
     detail: str = Field(description="a sentence for the operator: value, limit, place, way out")
-    error: str = Field(description="kind of the error, a word for programs")
+    error: str = Field(description="kind of the error, a word for programs", json_schema_extra={"enum": [*WORDS]})
     errors: list[Fault] = Field(
         default=[], description="the unusable fields of the request, at most 20, when that is the reason"
     )

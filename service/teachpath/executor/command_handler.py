@@ -30,7 +30,7 @@ from teachpath.io.bus_delivery import Delivery
 from teachpath.logs import continue_request
 from teachpath.records import Array, Command, ExecutorStatus, JournalEntry
 from teachpath.time_source import TimeSource
-from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
+from teachpath_proto.control import CommandVerb, ExecutorState, JournalVerb, LeaseAction
 from teachpath_proto.keys import Keys
 
 log: logging.Logger = logging.getLogger(__name__)
@@ -115,7 +115,7 @@ class CommandHandler:
         """Whether no execution is under way."""
         return self.current is None or self.current.is_resting
 
-    def write_journal(self, who: str, verb: str, answer: str, *, execution: str | None = None) -> None:
+    def write_journal(self, who: str, verb: JournalVerb, answer: str, *, execution: str | None = None) -> None:
         """Publish an entry of the journal, and never wait: who did what to an execution, and the answer."""
         if execution is None:
             execution = self.current.id if self.current else ""
@@ -132,11 +132,11 @@ class CommandHandler:
                 who = self.lease.require(command.lease, who)
             self._dispatch(command, who)
         except TeachpathError as error:
-            self.write_journal(who, command.verb, str(error))
+            self.write_journal(who, JournalVerb(command.verb), str(error))
             log.info("%s by %s is refused: %s", command.verb, who, error)
             raise
         if not self._is_repeat(command):
-            self.write_journal(who, command.verb, "done")
+            self.write_journal(who, JournalVerb(command.verb), "done")
             log.info("%s by %s: done", command.verb, who)
         return wire.encode_status(self._status())
 
@@ -166,7 +166,8 @@ class CommandHandler:
         request = wire.decode_lease_request(payload)
         lease = self.lease.answer(request)
         if request.action not in (LeaseAction.LOOK, LeaseAction.BEAT):
-            self.write_journal(request.name or lease.holder or "the holder", f"{request.action} control", "done")
+            verb = JournalVerb(f"{request.action} control")
+            self.write_journal(request.name or lease.holder or "the holder", verb, "done")
         return wire.encode_lease(lease)
 
     def _dispatch(self, command: Command, who: str) -> None:

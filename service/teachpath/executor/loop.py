@@ -33,13 +33,12 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.realtime import EXECUTOR_PRIORITY, realtime_threads, request_realtime
 from teachpath.records import ExecutorStatus, JointState
 from teachpath.time_source import TimeSource
-from teachpath_proto.control import CommandVerb, ExecutorState
+from teachpath_proto.control import ExecutorState, JournalVerb
 from teachpath_proto.keys import Keys
 
 log: logging.Logger = logging.getLogger(__name__)
 
 IDLE_PERIODS: Final = 5  # control periods in one cycle of the loop while no execution is under way
-UNASKED_MOTION: Final = "unasked motion"  # in the journal, where verbs of commands stand
 # [Hz] of the status at most while no execution is under way; an executor that is silent for a second counts as gone
 IDLE_STATUS_RATE: Final = 4.0
 
@@ -175,7 +174,7 @@ class Executor:
         if latest is None:  # no arm spoke yet, or its driver has ended: the next one rests where it is found
             self._unasked.forget()
         elif sentence := self._unasked.update(due, *latest):
-            self._command_handler.write_journal("the arm", UNASKED_MOTION, sentence, execution="")
+            self._command_handler.write_journal("the arm", JournalVerb.UNASKED_MOTION, sentence, execution="")
             self._command_handler.status_is_due = True
 
     def _supervise(self, current: Execution, due: int) -> None:
@@ -245,12 +244,12 @@ class Executor:
         self._stall_detector.restart(due)
         reason = f"setpoints were late {current.program.location}: the arm came to rest"
         goes_on = "" if current.program.held else ", and goes on from there"
-        self._command_handler.write_journal("the arm", CommandVerb.HOLD, reason + goes_on)
+        self._command_handler.write_journal("the arm", JournalVerb.HOLD, reason + goes_on)
         return True
 
     def _hold(self, current: Execution, reason: str) -> None:
         if not current.program.hold_requested:
-            self._command_handler.write_journal("the executor", CommandVerb.HOLD, reason)
+            self._command_handler.write_journal("the executor", JournalVerb.HOLD, reason)
         current.hold(reason)
 
     def _judge_grasp(self, current: Execution, arm: JointState, due: int) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from teachpath.records.calibrations import Calibration
-from teachpath_proto.control import CommandVerb, LeaseAction
+from teachpath_proto.control import CommandVerb, JournalVerb, LeaseAction
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +101,6 @@ class JournalEntry:
 
     at_ns: int
     who: str
-    verb: str
+    verb: JournalVerb
     execution: str
     answer: str

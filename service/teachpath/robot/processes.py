@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from enum import StrEnum
 from functools import partial
 from importlib import import_module
 from typing import Final
@@ -33,6 +34,14 @@ EXECUTOR_SUGGESTION: Final = "its execution ended as faulted: look where the arm
 SIMULATOR_SUGGESTION: Final = (
     "its execution ended as faulted; its arm stands at home and the object at its start: start again"
 )
+
+
+class ProcessState(StrEnum):
+    """Whether a process beside the service runs."""
+
+    RUNNING = "running"
+    RESTARTING = "restarting"
+    ENDED = "ended"  # it was stopped, or has died too often
 
 
 def attached(name: str) -> Callable[[], None]:
@@ -88,13 +97,13 @@ class SupervisedProcess:
         return self._process is not None and self._process.is_alive()
 
     @property
-    def state(self) -> str:
-        """`running`, from `start` on, `restarting`, or `ended` when it is stopped or has died too often."""
+    def state(self) -> ProcessState:
+        """Running, from `start` on, restarting, or ended when it is stopped or has died too often."""
         if self.is_alive():
-            return "running"
+            return ProcessState.RUNNING
         if self.is_given_up or self._stopping.is_set():
-            return "ended"
-        return "restarting" if self._process or self._death else "running"
+            return ProcessState.ENDED
+        return ProcessState.RESTARTING if self._process or self._death else ProcessState.RUNNING
 
     def note(self) -> str:
         """Return what the operator should know and do about the last death; empty when it is long ago."""

@@ -6,6 +6,7 @@ from teachpath.access.audit import MAX_REFUSALS, MAX_WAITING, WINDOW, Audit
 from teachpath.errors import StorageUnavailable
 from teachpath.io.audit_log import Happening
 from teachpath.records import JournalEntry
+from teachpath_proto.control import JournalVerb
 
 
 class MemoryLog:
@@ -28,7 +29,7 @@ def test_entries_come_in_order_and_none_is_left_at_the_end() -> None:
     audit.start()
     for number in range(1000):
         audit.note("anna", "10.0.0.7", f"order {number}", "200")
-    audit.note_journal(JournalEntry(0, "anna", "start", "e1", "done"))
+    audit.note_journal(JournalEntry(0, "anna", JournalVerb.START, "e1", "done"))
     audit.stop()
     assert [entry.action for entry in log.entries] == [*(f"order {number}" for number in range(1000)), "start e1"]
 

@@ -12,7 +12,7 @@ from teachpath.errors import UnusableInput, UnusableSample
 from teachpath.io import wire
 from teachpath.records import Command, ExecutorStatus, JournalEntry, Lease, LeaseRequest, Setpoint
 from teachpath_proto import motion_pb2, tracker_pb2
-from teachpath_proto.control import CommandVerb, ExecutorState, LeaseAction
+from teachpath_proto.control import CommandVerb, ExecutorState, JournalVerb, LeaseAction
 from tests.unit.recording.hands import sample
 
 FLOATS = (FieldDescriptor.CPPTYPE_DOUBLE, FieldDescriptor.CPPTYPE_FLOAT)
@@ -172,8 +172,13 @@ def test_words_about_control_survive_the_wire() -> None:
         assert wire.decode_lease_request(wire.encode_lease_request(request)) == request
     lease = Lease("Ada", 2.5, True, "Bea", 7.5, "token")
     assert wire.decode_lease(wire.encode_lease(lease)) == lease
-    entry = JournalEntry(5, "Ada", "hold", "e1", "done")
+    entry = JournalEntry(5, "Ada", JournalVerb.HOLD, "e1", "done")
     assert wire.decode_entry(wire.encode_entry(entry)) == entry
+    for fields in ({}, {"verb": "dance"}, {"verb": "Hold"}):
+        with pytest.raises(UnusableInput, match="the journal knows no"):
+            wire.decode_entry(motion_pb2.JournalEntry(**fields).SerializeToString())
+    assert set(JournalVerb) > set(CommandVerb)  # whatever is commanded stands there
+    assert {f"{action} control" for action in LeaseAction} - {"look control", "beat control"} < set(JournalVerb)
 
 
 def test_an_override_outside_its_range_is_refused() -> None:

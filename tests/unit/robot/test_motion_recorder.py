@@ -15,7 +15,7 @@ from teachpath.motion.analysis.time_series import time_series
 from teachpath.motion.arm.model import Arm
 from teachpath.records import ExecutorStatus, JointState, JournalEntry, Plan, Setpoint
 from teachpath.robot.motion_recorder import SETTLING_NS, STOPPING_NS, MotionRecorder
-from teachpath_proto.control import ExecutorState
+from teachpath_proto.control import ExecutorState, JournalVerb
 from teachpath_proto.keys import Keys
 from tests.unit.executor.executors import Bench
 from tests.unit.motion.ways import MIDDLE, way
@@ -62,7 +62,9 @@ def test_a_motion_is_written_whole_and_read_back(tmp_path: Path, middle: Plan) -
     for cycle in (0, 1, 2, 5):
         desk.send(cycle)
     desk.send(7, "another")
-    desk.bus.publish(KEYS.executor_journal, wire.encode_entry(JournalEntry(1, "Ada", "hold", "execution-1", "done")))
+    desk.bus.publish(
+        KEYS.executor_journal, wire.encode_entry(JournalEntry(1, "Ada", JournalVerb.HOLD, "execution-1", "done"))
+    )
     desk.tell("ended")
     desk.recorder.process_round()
     assert desk.motions.path("execution-1").suffix == ".part"

@@ -37,6 +37,7 @@ from teachpath.records import (
     Task,
     Version,
 )
+from teachpath_proto.control import JournalVerb
 
 T = TypeVar("T")
 
@@ -183,4 +184,4 @@ def _summary(row: RunTable) -> RunSummary:
 
 
 def _entry(row: JournalRow) -> JournalEntry:
-    return JournalEntry(row.at_ns, row.who, row.verb, row.execution, row.answer)
+    return JournalEntry(row.at_ns, row.who, JournalVerb(row.verb), row.execution, row.answer)

@@ -9,7 +9,7 @@ from teachpath.errors import UnusableInput
 from teachpath.io.wire.parsing import parse
 from teachpath.records import Command, JournalEntry, Lease, LeaseRequest
 from teachpath_proto import motion_pb2
-from teachpath_proto.control import CommandVerb, LeaseAction
+from teachpath_proto.control import CommandVerb, JournalVerb, LeaseAction
 
 LONGEST_NAME: Final = 64  # characters of a name that everybody is shown
 LONGEST_BEAT: Final = 60.0  # [s] between two beats of a lease
@@ -80,7 +80,10 @@ def encode_entry(entry: JournalEntry) -> bytes:
 def decode_entry(payload: bytes) -> JournalEntry:
     """Return an entry of the journal; raises UnusableInput when malformed."""
     m = parse(motion_pb2.JournalEntry, payload)
-    return JournalEntry(**{name: getattr(m, name) for name in JournalEntry.__dataclass_fields__})
+    if m.verb not in list(JournalVerb):
+        raise UnusableInput(f"the journal knows no {m.verb[:80]!r}; it has {', '.join(JournalVerb)}")
+    fields = {name: getattr(m, name) for name in JournalEntry.__dataclass_fields__}
+    return JournalEntry(**fields | {"verb": JournalVerb(m.verb)})
 
 
 def _name(text: str) -> None:
