@@ -52,7 +52,9 @@ COUNT: Final = {"type": "string", "pattern": "^[0-9]{1,8}$", "description": "How
 def live_description() -> dict[str, Any]:
     """Return the description in AsyncAPI 3.0."""
     schemas = schemas_of([ChangeEvent, ResyncEvent, JointMessage, *STATES.values()])
-    schemas |= schemas_of([SampleMessage, PingMessage, EndMessage, PongMessage, ReportMessage, RefusedMessage])
+    schemas |= schemas_of([PongMessage, ReportMessage, RefusedMessage])
+    taken = schemas_of([SampleMessage, PingMessage, EndMessage])  # where an unknown field is refused
+    schemas |= {name: schema | {"additionalProperties": False} for name, schema in taken.items()}
     states = {f"{topic}State": _state_event(topic, kind.__name__) for topic, kind in STATES.items()}
     changes = {"change": _named("ChangeEvent"), "resync": _named("ResyncEvent")}
     orders = {"sample": HAND_SAMPLE, "sampleInJson": _named("SampleMessage"), "ping": _named("PingMessage")}
