@@ -17,7 +17,23 @@ FistCommand = Literal["toggle", "discard"]
 
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
-JournalVerb = Literal["start", "override", "hold", "resume", "stop", "reverse", "step", "revoke", "teleoperate", "acknowledge", "acquire control", "release control", "ask control", "keep control", "unasked motion"]
+JournalVerb = Literal[
+    "start",
+    "override",
+    "hold",
+    "resume",
+    "stop",
+    "reverse",
+    "step",
+    "revoke",
+    "teleoperate",
+    "acknowledge",
+    "acquire control",
+    "release control",
+    "ask control",
+    "keep control",
+    "unasked motion",
+]
 
 LimitSource = Literal["model", "operator", "default"]
 

@@ -7,6 +7,7 @@ from typing import Any
 
 FILE = Path(__file__).parents[2] / "clients" / "teachpath_client" / "models.py"
 WIDTH = 112  # of the text in a docstring
+MAX_LINE = 120  # characters of a line, its end not counted
 HEAD = '''"""What a station answers: frozen records with the names and types of the REST API.
 
 Generated from its description by `python -m tests.contract.openapi`; do not edit. Metres, radians, seconds; quaternions
@@ -47,8 +48,11 @@ def _references(value: Any) -> set[str]:
 
 
 def _alias(name: str, schema: dict[str, Any]) -> str:
-    words = ", ".join(f'"{word}"' for word in schema["enum"])
-    return f"{name} = Literal[{words}]\n"
+    words = [f'"{word}"' for word in schema["enum"]]
+    line = f"{name} = Literal[{', '.join(words)}]"
+    if len(line) > MAX_LINE:
+        line = "\n".join([f"{name} = Literal[", *(f"    {word}," for word in words), "]"])
+    return f"{line}\n"
 
 
 def _class(name: str, schema: dict[str, Any]) -> str:
