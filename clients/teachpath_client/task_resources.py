@@ -10,6 +10,7 @@ from teachpath_client.models import (
     Demonstration,
     FileReport,
     Health,
+    Identity,
     Job,
     MeasuredCalibration,
     MeshHull,
@@ -37,6 +38,10 @@ class TaskResources(Rest):
     def health(self) -> Health:
         """Return which parts run, and what an operator should know."""
         return self._ask(Health, "GET", "/health")
+
+    def identity(self) -> Identity:
+        """Return who this program is for the station, and what it may do."""
+        return self._ask(Identity, "GET", "/identity")
 
     def scenes(self) -> list[Scene]:
         """List the scenes, each with its object where it lies now."""

@@ -1,4 +1,4 @@
-"""Attacks by what no browser sends: broken origins and bodies, names that look alike, another's tracker."""
+"""Attacks by what no browser sends: broken origins and bodies, names that look alike, another's tracker, ROS 2."""
 
 import asyncio
 import re
@@ -11,9 +11,14 @@ from websockets.sync.client import connect
 
 from teachpath.io.wire import encode_sample
 from teachpath.records import Capability
+from teachpath_client.errors import ClientError
+from teachpath_client.ros2.arm_show import ArmShow
+from teachpath_client.ros2.bridge import Names
+from teachpath_client.ros2.node import Node
 from tests.contract import access_matrix, stations
 from tests.contract.desk import Desk, refused
 from tests.contract.guarded import Guarded, opened
+from tests.unit.clients.ros2.peer import RmwPeer
 from tests.unit.recording.hands import sample
 from tests.waiting import wait_until
 
@@ -135,3 +140,12 @@ def test_whoever_takes_the_tracker_that_another_left_is_another_source(guarded: 
     handle.close()
     operator, other, operator_again = sources
     assert operator == operator_again != other
+
+
+@pytest.mark.parametrize("role", [Capability.VIEW, Capability.DEMONSTRATE, Capability.TEACH])
+def test_no_topic_of_ros_2_starts_a_plan_without_the_role_operate(guarded: Guarded, role: Capability) -> None:
+    with RmwPeer() as peer, Node(peer.router) as node, guarded.client(role) as client:
+        show = ArmShow(node, client, Names())
+        with pytest.raises(ClientError, match=f"needs a token with the role operate; {role} may view"):
+            show.followed([]).__enter__()
+        assert not any("/MS/" in token for token in peer.tokens())

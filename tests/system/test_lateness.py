@@ -7,6 +7,7 @@ import sys
 import time
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import httpx
 import numpy as np
@@ -18,10 +19,14 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.program import PlanProgram
 from teachpath.motion.settings import MotionSettings
 from teachpath_client.errors import JobFailed
-from teachpath_client.models import Plan
+from teachpath_client.models import Execution, Plan
+from teachpath_client.ros2.executed import executed_trajectory
+from teachpath_client.ros2.messages import DIAGNOSTICS, MARKERS, TRAJECTORY, decode, encode, header
+from teachpath_proto.control import ExecutorState
 from tests.system.processes import Service, family
 from tests.system.test_station import record
 from tests.unit.clients.ros2.peer import RmwPeer
+from tests.unit.clients.ros2.test_readings import NAMES
 from tests.waiting import HANG, wait_until
 
 ARM = Arm.of_variant()
@@ -114,26 +119,117 @@ def test_an_executor_that_dies_leaves_the_arm_at_rest_on_its_path(service: Servi
     assert off_path(motion_of(service, execution.id)) <= OFF_PATH
 
 
-def test_the_plan_and_what_the_arm_does_reach_ros_2(service: Service, plan: Plan) -> None:
-    words = ["--endpoint", service.endpoint, "--url", service.url, "--plan", plan.id]
-    with RmwPeer() as peer:
-        peer.announce("MS", "/teachpath/joint_trajectory", "trajectory_msgs/msg/JointTrajectory")
-        command = [sys.executable, "-m", "teachpath_client", "ros2", "--router", peer.router]
-        listed = subprocess.run([*command, "--topics"], capture_output=True, text=True, timeout=HANG, check=True)
-        assert listed.stdout == ""  # nobody publishes yet
-        bridge = subprocess.Popen([*command, *words], stderr=subprocess.PIPE, text=True)
+def test_ros_2_sees_plan_arm_task_and_execution(service: Service, plan: Plan) -> None:
+    with RmwPeer() as peer, Bridge(service, peer, "--plan", plan.id, "--task", TASK) as bridge:
+        listed = subprocess.run(
+            [*ROS2, "--router", peer.router, "--topics"], capture_output=True, text=True, check=True
+        )
+        assert "/joint_states  sensor_msgs/msg/JointState\n" in listed.stdout
+        topics = ("joint_states", "tf", "teachpath/joint_trajectory", "teachpath/markers")
+        wait_until(lambda: all(map(bridge.heard, topics)), "all come")
+        service.station.wait_for_arm(timeout=HANG)
+        execution = service.station.begin_execution(plan.id)
+        wait_until(lambda: service.station.get_execution(execution.id).status.progress > 0.0, "it is on its way")
+        service.station.stop(execution.id)
+        wait_until(lambda: bridge.heard("teachpath/executed_trajectory"), "it is told when it has ended")
+    assert f"plan {plan.id}: published on /teachpath/joint_trajectory" in bridge.said
+    assert bridge.heard("teachpath/joint_trajectory") == [service.station.program(plan.id, "cdr")]
+    _, *lines = decode(MARKERS, bridge.heard("teachpath/markers")[0]).markers
+    demonstrations = [each for each in service.station.demonstrations(TASK) if each.verdict != "reject"]
+    run = service.station.newest_run(TASK)
+    assert run is not None
+    groups = [f"{TASK}/demonstrations"] * len(demonstrations) + [f"{TASK}/paths"] * len(run.learned.paths)
+    assert [line.ns for line in lines] == groups
+    recorded = executed_trajectory(service.station.recorded_execution(execution.id), NAMES)
+    assert recorded is not None
+    assert bridge.heard("teachpath/executed_trajectory") == [encode(TRAJECTORY, **recorded)]
 
-        def heard(topic: str) -> list[bytes]:
-            return [content for key, content, _ in list(peer.heard) if key.startswith(f"0/{topic}/")]
 
+def test_ros_2_starts_a_plan_by_its_own_trajectory_alone(service: Service, plan: Plan) -> None:
+    station = service.station
+    station.wait_for_arm(timeout=HANG)
+    before = {each.id for each in station.executions()}
+
+    def new() -> list[Execution]:
+        return [each for each in station.executions() if each.id not in before]
+
+    with RmwPeer() as peer, Bridge(service, peer, "--plan", plan.id, "--execute") as bridge:
+        own = decode(TRAJECTORY, station.program(plan.id, "cdr", rate=50.0))
+        other = decode(TRAJECTORY, station.program(plan.id, "cdr", rate=50.0))
+        for point in other.points:
+            point.positions = point.positions + 0.001
+        wait_until(lambda: any("%follow_joint_trajectory/" in token for token in peer.tokens()), "it listens")
+        bridge.ask(other)
+        wait_until(lambda: "refused: it is no plan's motion" in bridge.reports(), "another motion is refused")
+        bridge.ask(own, stamp_ns=1)
+        wait_until(lambda: "s old, limit 2 s" in bridge.reports(), "a stale one is refused")
+        assert not new()
+        # On a busy machine a request may be stale before it is read; one that comes while the arm moves is refused.
+        wait_until(lambda: new() or bridge.ask(own), "it begins", pause=lambda _: time.sleep(0.2))
+        (first,) = new()
+        assert (first.plan, station.get_lease().holder) == (plan.id, "ROS 2, domain 0")
+        wait_until(lambda: station.get_execution(first.id).status.duration > 0.1, "it moves")
+        own.points, points = [], own.points
+        wait_until(lambda: all(map(is_resting, new())) or bridge.ask(own), "a trajectory without points stops it")
+        own.points = points
+        wait_until(lambda: station.get_lease().holder == "", "control is given back")
+        wait_until(lambda: len(new()) > 1 or bridge.ask(own), "it begins again", pause=lambda _: time.sleep(0.2))
+    wait_until(lambda: all(each.status.state == "held" or is_resting(each) for each in new()), "the arm is held")
+    station.stop_arm()
+    wait_until(lambda: all(map(is_resting, new())), "the arm rests")
+    wait_until(lambda: station.get_lease().holder == "", "control is given back")
+    assert len(new()) == 2
+
+
+def is_resting(execution: Execution) -> bool:
+    return ExecutorState(execution.status.state).is_resting
+
+
+ROS2 = [sys.executable, "-m", "teachpath_client", "ros2"]
+
+
+class Bridge:
+    """A running `teachpath-client ros2`; use it as a context manager, at whose end it gets SIGTERM.
+
+    Attributes:
+        said: on its standard error, at its end.
+    """
+
+    def __init__(self, service: Service, peer: RmwPeer, *words: str) -> None:
+        self._peer, self.said = peer, ""
+        for topic, kind in (
+            ("joint_trajectory", TRAJECTORY),
+            ("executed_trajectory", TRAJECTORY),
+            ("markers", MARKERS),
+        ):
+            peer.announce("MS", f"/teachpath/{topic}", kind, number=len(topic))
+        where = ["--router", peer.router, "--endpoint", service.endpoint, "--url", service.url]
+        self._process = subprocess.Popen([*ROS2, *where, *words], stderr=subprocess.PIPE, text=True)
+
+    def __enter__(self) -> "Bridge":
         try:
-            topics = ("joint_states", "tf", "teachpath/joint_trajectory")
-            wait_until(lambda: all(heard(topic) for topic in topics) or bridge.poll() is not None, "all come")
-            bridge.send_signal(signal.SIGTERM)
-            _, said = bridge.communicate(timeout=HANG)
+            wait_until(lambda: self.heard("joint_states") or self._process.poll() is not None, "it begins")
+        except BaseException:
+            self._process.kill()
+            raise
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        try:
+            self._process.send_signal(signal.SIGTERM)
+            _, self.said = self._process.communicate(timeout=HANG)
         finally:
-            bridge.kill()
-            bridge.wait(HANG)
-    assert (bridge.returncode, "Traceback" in said) == (0, False), said
-    assert f"plan {plan.id}: published on /teachpath/joint_trajectory" in said
-    assert heard("teachpath/joint_trajectory") == [service.station.program(plan.id, "cdr")]
+            self._process.kill()
+            self._process.wait(HANG)
+        assert (self._process.returncode, "Traceback" in self.said) == (0, False), self.said
+
+    def heard(self, topic: str) -> list[bytes]:
+        return [content for key, content, _ in list(self._peer.heard) if key.startswith(f"0/{topic}/")]
+
+    def reports(self) -> str:
+        return "\n".join(decode(DIAGNOSTICS, each).status[0].message for each in self.heard("teachpath/execution"))
+
+    def ask(self, trajectory: Any, stamp_ns: int = 0) -> None:
+        fields = {"joint_names": trajectory.joint_names, "points": trajectory.points}
+        content = encode(TRAJECTORY, header=header(stamp_ns or time.time_ns(), ""), **fields)
+        self._peer.put("/teachpath/follow_joint_trajectory", TRAJECTORY, content)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -25,6 +24,10 @@ class Names:
         joints: topic of sensor_msgs/JointState.
         transforms: topic of tf2_msgs/TFMessage.
         trajectory: topic of trajectory_msgs/JointTrajectory; none that a controller listens to, unless that is meant.
+        executed: topic of trajectory_msgs/JointTrajectory, of executions that have ended.
+        markers: topic of visualization_msgs/MarkerArray.
+        asked: topic of trajectory_msgs/JointTrajectory that ask for an execution.
+        reported: topic of diagnostic_msgs/DiagnosticArray, what becomes of them.
         world: frame of the station's world.
         tool: frame of the arm's tool centre point.
     """
@@ -32,6 +35,10 @@ class Names:
     joints: str = "/joint_states"
     transforms: str = "/tf"
     trajectory: str = "/teachpath/joint_trajectory"
+    executed: str = "/teachpath/executed_trajectory"
+    markers: str = "/teachpath/markers"
+    asked: str = "/teachpath/follow_joint_trajectory"
+    reported: str = "/teachpath/execution"
     world: str = "world"
     tool: str = "teachpath_tool"
 
@@ -44,12 +51,15 @@ class ArmBridge:
         robot: the arm, as the station describes it.
         names: of topics and frames.
         bridged: the router is zenoh-bridge-ros2dds.
+
+    Attributes:
+        joints: names of the arm's joints in messages, in its order.
     """
 
     def __init__(self, node: Node, robot: Robot, names: Names, *, bridged: bool = False) -> None:
         self._node, self._robot, self._names = node, robot, names
-        self._joint_names = [joint_name(joint.name) for joint in robot.joints]
-        self._joints = node.publisher(names.joints, JOINTS, bridged=bridged)
+        self.joints: list[str] = [joint_name(joint.name) for joint in robot.joints]
+        self._states = node.publisher(names.joints, JOINTS, bridged=bridged)
         self._transforms = node.publisher(names.transforms, TRANSFORMS, bridged=bridged)
         self._trajectory = node.publisher(names.trajectory, TRAJECTORY, bridged=bridged)
 
@@ -59,16 +69,16 @@ class ArmBridge:
             state = JointState.FromString(payload)
         except Exception as error:  # protobuf's own errors are no ValueError
             raise ValueError(f"no joint state: {error}") from None
-        if len(state.position) != len(self._joint_names) or not np.isfinite(state.position).all():
-            raise ValueError(f"a joint state needs {len(self._joint_names)} finite positions: {list(state.position)}")
-        self._joints.put(
+        if len(state.position) != len(self.joints) or not np.isfinite(state.position).all():
+            raise ValueError(f"a joint state needs {len(self.joints)} finite positions: {list(state.position)}")
+        self._states.put(
             header=header(state.stamp_ns, ROOT),
-            name=self._joint_names,
+            name=self.joints,
             position=np.array(state.position),
             velocity=np.array(state.velocity),
             effort=np.array(state.torque),
         )
-        position, turn = tool_pose(self._robot, dict(zip(self._joint_names, state.position, strict=True)))
+        position, turn = tool_pose(self._robot, dict(zip(self.joints, state.position, strict=True)))
         axes = ("x", "y", "z")
         transform = make(
             "geometry_msgs/msg/Transform",
@@ -83,18 +93,13 @@ class ArmBridge:
         )
         self._transforms.put(transforms=[stamped])
 
-    def publish_trajectory(self, content: bytes, wait: Callable[[], bool]) -> bool:
-        """Publish a trajectory once, as soon as somebody subscribes to its topic.
+    def publish_trajectory(self, content: bytes) -> bool:
+        """Publish a trajectory, and return whether; it is not published while nobody subscribes to its topic.
 
         Args:
             content: trajectory_msgs/JointTrajectory in CDR, as the station writes the program of a plan.
-            wait: waits a moment, and tells whether to go on waiting.
-
-        Returns:
-            whether it was published.
         """
-        while not self._node.is_subscribed(self._trajectory.topic):
-            if not wait():
-                return False
-        self._trajectory.put_encoded(content)
-        return True
+        subscribed = self._node.is_subscribed(self._trajectory.topic)
+        if subscribed:
+            self._trajectory.put_encoded(content)
+        return subscribed

@@ -12,6 +12,8 @@ TRANSFORMS: Final = "tf2_msgs/msg/TFMessage"
 JOINTS: Final = "sensor_msgs/msg/JointState"
 TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
 BOOL: Final = "std_msgs/msg/Bool"
+MARKERS: Final = "visualization_msgs/msg/MarkerArray"
+DIAGNOSTICS: Final = "diagnostic_msgs/msg/DiagnosticArray"
 SECOND: Final = 1_000_000_000  # [ns]
 MAX_SIZE: Final = 1_000_000  # bytes; a JointState of 100 joints has 5,000
 
@@ -41,10 +43,10 @@ def type_hash(kind: str) -> str:
     return str(typestore().hash_rihs01(kind))
 
 
-def decode(kind: str, payload: bytes) -> Any:
-    """Read a message; raises `Malformed` with the reason."""
-    if len(payload) > MAX_SIZE:
-        raise Malformed(f"a message of {len(payload)} bytes is over the limit of {MAX_SIZE}")
+def decode(kind: str, payload: bytes, *, largest: int = MAX_SIZE) -> Any:
+    """Read a message of at most `largest` bytes; raises `Malformed` with the reason."""
+    if len(payload) > largest:
+        raise Malformed(f"a message of {len(payload)} bytes is over the limit of {largest}")
     if len(payload) < 4 or payload[0] != 0 or payload[1] not in (0, 1):
         raise Malformed(f"{payload[:4].hex(' ') or 'nothing'} in front does not say that CDR follows")
     try:

@@ -53,3 +53,39 @@ def posed(stamp_ns: int, position: tuple[float, float, float]) -> bytes:
     """Return `POSE` with another stamp and position."""
     head = POSE[:4] + struct.pack("<iI", *divmod(stamp_ns, 1_000_000_000))
     return head + POSE[12:20] + struct.pack("<3d", *position) + POSE[44:]
+
+
+NO_MARKERS = bytes.fromhex(
+    "00010000"
+    "01000000"  # one marker
+    "00000000 00000000 06000000 776f726c6400 0000"  # no stamp, frame "world", to a multiple of 4
+    "01000000 00 000000"  # no namespace
+    "00000000 04000000 03000000 00000000"  # id 0, LINE_STRIP, DELETEALL, to a multiple of 8
+    "0000000000000000 0000000000000000 0000000000000000"  # position
+    "0000000000000000 0000000000000000 0000000000000000 000000000000f03f"  # x, y, z, w = 0, 0, 0, 1
+    "0000000000000000 0000000000000000 0000000000000000"  # scale
+    "00000000 00000000 00000000 00000000"  # colour
+    "00000000 00000000"  # lives for ever
+    "00 000000 00000000 00000000"  # not locked to its frame; no points, no colours
+    "01000000 00 000000"  # no texture
+    "00000000 00000000 01000000 00 000000 01000000 00 000000 00000000"  # its image: no stamp, frame, format, bytes
+    "00000000"  # nor its coordinates
+    "01000000 00 000000 01000000 00 000000"  # no text, no mesh
+    "01000000 00 000000 00000000"  # nor its file
+    "00"
+)
+
+
+def report(sentence: str) -> bytes:
+    """Return the DiagnosticArray of a refusal at `STAMP_NS`, of the arm "puma560", by teachpath's name for it."""
+
+    def text(words: str) -> bytes:
+        encoded = words.encode() + b"\0"
+        return struct.pack("<I", len(encoded)) + encoded
+
+    body = struct.pack("<iI", *divmod(STAMP_NS, 1_000_000_000)) + text("")
+    body += bytes(-len(body) % 4) + struct.pack("<I", 1)  # one status
+    body += b"\x02"  # ERROR
+    for words in ("teachpath: execution by topic", sentence, "puma560"):
+        body += bytes(-len(body) % 4) + text(words)
+    return b"\0\1\0\0" + body + bytes(-len(body) % 4) + struct.pack("<I", 0)  # no values

@@ -29,6 +29,14 @@ TYPES = {  # of each kind: its name and hash in keys
         "trajectory_msgs::msg::dds_::JointTrajectory_/"
         "RIHS01_179b33eba59d676f6d967ac71fe35e7ca2f64b2f3928f4a018cec115e213796e"
     ),
+    "visualization_msgs/msg/MarkerArray": (
+        "visualization_msgs::msg::dds_::MarkerArray_/"
+        "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"
+    ),
+    "diagnostic_msgs/msg/DiagnosticArray": (
+        "diagnostic_msgs::msg::dds_::DiagnosticArray_/"
+        "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"
+    ),
 }
 
 
