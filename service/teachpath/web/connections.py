@@ -93,7 +93,7 @@ class LimitedWebSocket(_ReaderTimeout, WebSocketsSansIOProtocol):
     async def send(self, message: Any) -> None:
         """Send a message; one that was refused with a status needs no handshake, whose lack uvicorn would log."""
         await super().send(message)
-        self.handshake_complete = self.handshake_complete or self.close_sent
+        self.handshake_complete: bool = self.handshake_complete or self.close_sent
 
 
 class LimitedProtocol(_ReaderTimeout, H11Protocol):
