@@ -59,6 +59,9 @@ class ModelJudge:
         return min((mujoco.mj_geomDistance(model, data, *pair, 1.0, None) for pair in pairs), default=1.0)
 
     def _model(self, scene: Scene) -> mujoco.MjModel:
+        return self._spec(scene).compile()
+
+    def _spec(self, scene: Scene) -> mujoco.MjSpec:
         spec = mujoco.MjSpec.from_file(str(self._file))
         spec.compiler.fusestatic = False
         for number, shape in enumerate(scene.obstacles):
@@ -66,7 +69,7 @@ class ModelJudge:
             spec.worldbody.add_geom(
                 name=f"shape {number}", type=KINDS[shape.kind], size=size, pos=place, quat=shape.orientation
             )
-        return spec.compile()
+        return spec
 
     def _fixed(self, model: mujoco.MjModel) -> int:
         """Return the last body that no joint moves."""

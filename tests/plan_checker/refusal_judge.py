@@ -22,6 +22,12 @@ ITERATIONS = 60
 CLOSED = 1e-6  # [m and rad] between the tool and its pose
 DAMPING = 1e-4
 LARGEST_STEP = 0.3  # [rad] of an iteration
+# Palm and closed fingers: centre, and half of the edges, in the frame that the gripper sits on [m].
+GRIPPER = (
+    ((0.0, 0.0, 0.0175), (0.022, 0.055, 0.0175)),
+    ((0.0, 0.026, 0.085), (0.011, 0.006, 0.05)),
+    ((0.0, -0.026, 0.085), (0.011, 0.006, 0.05)),
+)
 LINK = 0.8  # [rad] between configurations at two places beside each other
 
 
@@ -34,7 +40,7 @@ class Refusal(StrEnum):
 
 
 class RefusalJudge(ModelJudge):
-    """Judges refusals of one arm; the links alone are kept away from the shapes, not the gripper.
+    """Judges refusals of one arm; its links and the closed gripper are kept away from the shapes.
 
     Args:
         file: of its model.
@@ -45,6 +51,18 @@ class RefusalJudge(ModelJudge):
     def __init__(self, file: Path, height: float, tool_length: float) -> None:
         super().__init__(file, height, tool_length)
         self._random = np.random.default_rng(0)
+
+    def _spec(self, scene: Scene) -> mujoco.MjSpec:
+        spec = super()._spec(scene)
+        site = spec.site("tool0")
+        body = site.parent if site else spec.body("tool0")
+        place, turn = (site.pos, site.quat) if site else (np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
+        matrix = np.empty(9)
+        mujoco.mju_quat2Mat(matrix, turn)
+        for center, half in GRIPPER:
+            at = place + matrix.reshape(3, 3) @ center
+            body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=half, pos=at, quat=turn, mass=0.0)
+        return spec
 
     def refuses(self, curve: Curve, scene: Scene) -> Refusal:
         """Tell what the search says of a path that a plan refuses."""
