@@ -79,7 +79,6 @@ DOORS = {
         "motion/collision/collision_model.py",
         "motion/collision/self_collision.py",
         "motion/arm/dynamics.py",
-        "motion/arm/held_object.py",
         "simulator/arm.py",
     ],
     "meshcat": ["live/preview"],
