@@ -10,6 +10,7 @@ from teachpath.executor.grasp_monitor import GraspMonitor
 from teachpath.executor.limit_meter import LimitMeter
 from teachpath.executor.pacing import NominalClock, Pacer
 from teachpath.executor.rest_points import RestPoints
+from teachpath.executor.tracking_meter import TrackingMeter
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.execution.motion_program import MotionProgram
 from teachpath.motion.execution.segments import Detour
@@ -40,7 +41,7 @@ class Execution:
 
     Attributes:
         reason: why the execution is held, stopped or faulted, in words.
-        tracking_error: the largest that the arm has reported [rad].
+        tracking: measures the arm against the setpoints.
         revocation: why the certificate of the plan holds no longer; empty while it holds.
         displacement: how far the arm was pushed away while it was held [rad]; while this is not 0, nothing is sent.
         arm_stops: whether the arm follows a way to rest, because setpoints were late; nothing is sent meanwhile.
@@ -66,7 +67,7 @@ class Execution:
         self.grasp: GraspMonitor = grasp
         self.state: ExecutorState = ExecutorState.APPROACHING
         self.reason: str = ""
-        self.tracking_error: float = 0.0
+        self.tracking: TrackingMeter = TrackingMeter(rate)
         self.revocation: str = ""
         self.displacement: float = 0.0
         self.arm_stops: bool = False
@@ -184,8 +185,7 @@ class Execution:
         """Hold for good, because the certificate of the plan holds no longer."""
         self.revocation = f"the certificate of {self.plan} was revoked: {reason}; stop, and plan the path again"
         self.program.hold()
-        if not self._final_state:
-            self.reason = self.revocation
+        self.reason = self.reason if self._final_state else self.revocation
 
     def start_detour(self, detour: Detour, start_q: Array) -> None:
         """Begin a step or a way back, unless the execution is being ended, or the nominal motion is not at rest.
@@ -241,6 +241,7 @@ class Execution:
             from_rest=self._standstill_left == STANDSTILL_SETPOINTS - 1,
             output=motion.output,
         )
+        self.tracking.add(setpoint)
         self._sent_count += 1
         self.state = self._current_state()
         return setpoint
@@ -263,7 +264,7 @@ class Execution:
             lateness_max_us=late.largest,
             limit_use=self._meter.max_use,
             limit_place=self._meter.max_use_location,
-            tracking_error=self.tracking_error,
+            tracking_error=self.tracking.largest,
             duration=self._sent_count / self._rate,
             length=self.program.arc_length,
             activity=self.program.activity + (LATE_ARM_SUFFIX if self.program.waiting else ""),

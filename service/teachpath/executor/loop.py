@@ -226,7 +226,7 @@ class Executor:
             self._hold(current, f"{why}: does its driver hear them? resume when it does")
         current.wait_for_late_arm(arm)
         if arm.execution == current.id:
-            self._judge_tracking(current, arm.tracking_error)
+            self._judge_tracking(current, current.tracking.measure(arm))
 
     def _follows_way_to_rest(self, current: Execution, arm: JointState, due: int) -> bool:
         """Wait for an arm that comes to rest because setpoints were late, and go on from where it rests."""
@@ -266,7 +266,6 @@ class Executor:
             current.reason = reason  # also where it was held already, for another reason
 
     def _judge_tracking(self, current: Execution, error: float) -> None:
-        current.tracking_error = max(current.tracking_error, error)
         if error > self._settings.largest_error:
             current.end(
                 ExecutorState.FAULTED,

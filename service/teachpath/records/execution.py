@@ -96,7 +96,7 @@ class ExecutorStatus:
         lateness_p99_us: 99th percentile of the lateness of a cycle [us].
         lateness_max_us: largest lateness of a cycle [us].
         limit_use: largest share of a joint limit used by the setpoints sent.
-        tracking_error: largest that the arm has reported [rad].
+        tracking_error: farthest that the arm was off its setpoints, or by its own account off what it wanted [rad].
         limit_place: where limit_use was reached, in words.
         duration: from the first setpoint to the newest [s].
         length: how far along the path the tool is [m].

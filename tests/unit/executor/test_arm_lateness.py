@@ -15,6 +15,7 @@ OFF_PATH = 3e-4  # m
 def stays_on_the_path(bench: MovedBench, path: np.ndarray) -> None:
     assert off_path(np.array(bench.positions), path) <= OFF_PATH
     assert np.all(np.abs(bench.velocities) <= ARM.limits.speed)
+    assert np.all(np.abs(bench.torques) < ARM.limits.torque)  # where it stands at one, it lags behind
 
 
 def test_undisturbed_the_arm_follows_its_path(middle: Plan, path: np.ndarray) -> None:
