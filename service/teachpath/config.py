@@ -42,9 +42,12 @@ from teachpath.web.settings import WebSettings
 from teachpath_proto.keys import is_name, name_refusal
 
 PREFIX = "TEACHPATH_"
-# former settings -> the one that does their work
+# former settings -> the one that does their work; empty: none does
 REPLACED = {
     **dict.fromkeys(("learning.guard", "learning.min_silhouette"), "learning.min_separation"),
+    "learning.inconsistent": "learning.outlier_limit",
+    **dict.fromkeys(("motion.grasp_tolerance", "simulator.reach"), "motion.grasp_depth"),
+    **dict.fromkeys(("learning.period", "simulator.silence"), ""),
     "bus.router": "bus.mode",
 }
 # RoboTasks (clfd datasets) was recorded in the frame of another arm; this maps it, shrunk, onto the Puma's table.
@@ -233,7 +236,8 @@ def _refuse_unknown(document: Any, kind: Any, place: str) -> None:
         return
     for key, value in document.items():
         if (now := REPLACED.get(f"{place}{key}")) is not None:
-            raise UnusableSettings(f"setting {place}{key} was replaced by {now}; see deploy/teachpath.toml")
+            fate = f"was replaced by {now}" if now else "is gone, and none takes its place; leave it out"
+            raise UnusableSettings(f"setting {place}{key} {fate}; see deploy/teachpath.toml")
         if key not in known:
             raise UnusableSettings(f"there is no setting {place}{key}; known here: {', '.join(known)}")
         inner = next((k for k in (known[key], *get_args(known[key])) if is_dataclass(k)), None)

@@ -1,5 +1,6 @@
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -32,6 +33,7 @@ DECODERS = [
 ]
 
 GOOD = sample(7, (0.1, 0.2, 0.3))
+STANDING = Setpoint(0, 1, 1, np.zeros(6), np.zeros(6), np.zeros(6), False, "e1")
 
 
 def payload(**changes: object) -> bytes:
@@ -138,6 +140,33 @@ def test_a_number_that_is_not_finite_is_refused_in_any_field_of_any_message(
         with pytest.raises(UnusableInput, match=field.name) as error:
             decode(broken.SerializeToString())
         assert str(value) in str(error.value)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_no_float_of_a_hand_sample_or_a_way_to_rest_lets_one_through(value: float) -> None:
+    hand = tracker_pb2.HandSample.FromString(payload())
+    for number in range(len(list(float_fields(hand)))):
+        place, field = list(float_fields(hand))[number]
+        for index in range(len(place.flexions)) if field.is_repeated else [0]:
+            with pytest.raises(UnusableSample, match="sample 7 of glove"):
+                wire.decode_sample("glove", with_value(hand, number, index, value), 1)
+    way = np.zeros((3, 3, 6))
+    for place in np.ndindex(way.shape):
+        way[place] = value
+        with pytest.raises(UnusableInput, match="way to rest is not finite"):
+            wire.decode_setpoint(wire.encode_setpoint(replace(STANDING, way_to_rest=way)))
+        way[place] = 0.0
+
+
+def with_value(message: Message, number: int, index: int, value: float) -> bytes:
+    """Return the message with one value instead of another."""
+    changed = type(message).FromString(message.SerializeToString())
+    place, field = list(float_fields(changed))[number]
+    if field.is_repeated:
+        getattr(place, field.name)[index] = value
+    else:
+        setattr(place, field.name, value)
+    return changed.SerializeToString()
 
 
 def test_the_words_of_the_contract_are_those_of_its_messages() -> None:

@@ -137,6 +137,7 @@ def test_a_wild_hand_leaves_the_arm_within_its_limits_and_clear() -> None:
         session.run(int(rng.integers(3, 40)), hand)
     session.run(300)
     assert session.within_limits()
+    assert np.degrees(np.linalg.norm(session.turned(), axis=1)).max() < 1.0
     rows = session.model.clearances(np.array(session.sent[::4]))
     assert min(row.distance for row in rows) >= SETTINGS.clearance_min
     assert len(session.reasons) > 2
@@ -161,6 +162,7 @@ def test_what_cannot_be_reached_is_said_and_the_arm_stays_as_near_as_it_safely_m
     gone = (session.tool() - begin) @ np.array(way) / np.linalg.norm(way)
     assert gone > 0.02
     assert session.within_limits()
+    assert np.degrees(np.linalg.norm(session.turned(), axis=1)).max() < 1.0
     back = session.run(900, np.zeros(3))
     np.testing.assert_allclose(back, begin, atol=2e-3)
     assert session.follower.reason == ""
