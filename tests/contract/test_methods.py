@@ -24,6 +24,13 @@ def test_a_method_that_an_address_has_not_is_told_all_that_it_has(desk: Desk, pa
         assert answer.headers["allow"] == allowed
 
 
+@pytest.mark.parametrize("name", ["%00", "%FF", "%ED%A0%80", "a%0Ab", "..%2Fapp.py", "x" * 5000])
+@pytest.mark.parametrize("folder", ["web", "vendor", "help"])
+def test_a_name_that_no_file_can_have_is_an_address_that_is_not_there(desk: Desk, folder: str, name: str) -> None:
+    answer = desk.send("GET", f"/{folder}/{name}")
+    assert answer.status_code == 404, answer.text
+
+
 @pytest.mark.parametrize("path", [path for path, methods in PATHS.items() if "get" in methods])
 def test_head_is_answered_as_get_is(desk: Desk, path: str) -> None:
     place = address(path, PATHS[path]["get"])

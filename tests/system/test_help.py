@@ -27,6 +27,7 @@ pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
 PICTURE = re.compile(r'<img\b[^>]*src="([^":]+)"')
+ODD = ["%00.html", "%FF.html", "%ED%A0%80.html", "x" * 5000 + ".html"]  # names that no file has
 FETCHED = re.compile(r"""<(?:script|img|link)\b[^>]*(?:src|href)="((?:https?:)?//[^"]*)""")
 
 
@@ -104,7 +105,7 @@ def test_every_picture_is_given_out(site: Path, address: str) -> None:
         assert (answer.status_code, answer.headers["content-type"].split("/")[0]) == (200, "image"), name
 
 
-@pytest.mark.parametrize("name", ["%2e%2e/app.py", "..%2fapp.py", "none.html", "sitemap.xml.gz", "assets"])
+@pytest.mark.parametrize("name", ["%2e%2e/app.py", "..%2fapp.py", "none.html", "sitemap.xml.gz", "assets", *ODD])
 def test_only_documents_are_given_out(address: str, name: str) -> None:
     answer = httpx.get(f"{address}/{name}", timeout=HANG, trust_env=False)
     assert (answer.status_code, "there is no document" in answer.text) == (404, True)

@@ -55,16 +55,25 @@ def help_router(folder: Path) -> APIRouter:
     @router.get("/help/{name:path}", dependencies=OPEN)
     def document(request: Request, name: str) -> Response:
         """Answer with a file of the site; 404 where it has none of that name, or was not built."""
-        path = (root / (name or "index.html")).resolve()
         if not root.is_dir():
             return _missing("the documents were not built here; build them with: make docs")
-        if path.suffix not in MEDIA or not path.is_relative_to(root) or not path.is_file():
+        if (path := _file(root, name or "index.html")) is None:
             return _missing(f"there is no document {name!r}; they begin at /help")
         scripts = _scripts(path) if path.suffix == ".html" else "'self'"
         policy = "; ".join((*_POLICY, f"script-src {scripts}"))
         return files.answer(request, path, MEDIA[path.suffix], headers={"Content-Security-Policy": policy})
 
     return router
+
+
+def _file(root: Path, name: str) -> Path | None:
+    """Return the file of a name below a folder; None: there is none, or none can be of that name."""
+    try:
+        path = (root / name).resolve()
+        is_there = path.suffix in MEDIA and path.is_relative_to(root) and path.is_file()
+    except (OSError, ValueError):  # too long a name, or one with a zero in it
+        return None
+    return path if is_there else None
 
 
 def _scripts(page: Path) -> str:
