@@ -2,6 +2,7 @@
 import { get, resourcePath } from "./api.js";
 
 const POINTS = 150; // of a demonstration as drawn
+const DECIMALS = 4; // of a metre: 0.1 mm
 const MAX_REQUESTS = 4; // at a time
 const NOTICE_INTERVAL = 100; // [ms] between two notices that more are here: each draws lists and view anew
 
@@ -56,7 +57,7 @@ export class TrajectoryCache {
   /** @param {Demonstration} demonstration */
   async #load(demonstration) {
     const { id } = demonstration;
-    const read = get(`${resourcePath("demonstrations", id, "trajectory")}?most=${POINTS}`);
+    const read = get(`${resourcePath("demonstrations", id, "trajectory")}?most=${POINTS}&decimals=${DECIMALS}`);
     const points = await read.then(
       ({ positions }) => positions,
       () => [], // a recording that cannot be read has no trajectory; its verdict says why

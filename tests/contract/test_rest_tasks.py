@@ -212,3 +212,7 @@ def test_a_trajectory_is_thinned_to_what_is_asked_for(desk: Desk) -> None:
     assert (few["times"][0], few["times"][-1]) == (whole["times"][0], whole["times"][-1])
     assert all(position in whole["positions"] for position in few["positions"])
     refused(desk.get(address, params={"most": 1}), 422, "query.most")
+    short = desk.get(address, params={"decimals": 4}).json()["positions"]
+    assert np.abs(np.subtract(short, whole["positions"])).max() < 0.5001e-4
+    assert short == [[round(value, 4) for value in position] for position in short] != whole["positions"]
+    refused(desk.get(address, params={"decimals": 3}), 422, "query.decimals")

@@ -50,13 +50,16 @@ def demonstrations_router(parts: Parts) -> APIRouter:
     async def get_trajectory(
         demonstration: str,
         most: Annotated[int, Query(ge=2, le=100_000, description="points; further ones are left out evenly")] = 100_000,
+        decimals: Annotated[
+            int | None, Query(ge=4, le=15, description="of every number, as much as is drawn; null: as it was measured")
+        ] = None,
     ) -> Response:
         """Return the object's trajectory in its transport phase: times [s], positions [m], orientations, world."""
 
         def encoded() -> bytes:
             row = store.demonstration(demonstration)
             carried = parts.recorder.annotations.carried(row)
-            return parts.reader.call(encode_trajectory, store.recordings, row, carried, most)
+            return parts.reader.call(encode_trajectory, store.recordings, row, carried, most, decimals)
 
         return Response(await run_sync(encoded, limiter=readers), media_type="application/json")
 

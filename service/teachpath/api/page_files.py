@@ -1,9 +1,10 @@
-"""The page's files as they are sent: compressed, 304 while a browser has them, and all modules announced ahead."""
+"""The page's files as they are sent: compressed, without comments, 304 while a browser has them, modules announced."""
 
 from __future__ import annotations
 
 import gzip
 import hashlib
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,8 @@ from teachpath.live.preview.page_modules import imported_modules
 
 LEAST_COMPRESSED: Final = 1000  # bytes; a shorter file gains nothing
 NONE: Final[Mapping[str, str]] = {}
+# Comments that have their lines to themselves; line numbers stay.
+COMMENTS: Final = re.compile(rb"^[ \t]*(?:/\*\*(?:(?!\*/).)*\*/|//[^\n]*)$", re.MULTILINE | re.DOTALL)
 PRELOAD: Final = "<!-- preload -->"  # where the page announces its modules
 
 
@@ -39,7 +42,14 @@ class PageFiles:
         self._contents: dict[Path, tuple[tuple[int, int], _Content]] = {}
 
     def answer(
-        self, request: Request, file: Path, media_type: str, *, entry: str = "", headers: Mapping[str, str] = NONE
+        self,
+        request: Request,
+        file: Path,
+        media_type: str,
+        *,
+        entry: str = "",
+        headers: Mapping[str, str] = NONE,
+        bare: bool = False,
     ) -> Response:
         """Return a file as an answer, or 304 where the browser has it; raises FileNotFoundError.
 
@@ -49,8 +59,9 @@ class PageFiles:
             media_type: of the file.
             entry: name of the page's first module beside the file; all that it imports is announced in the file.
             headers: of this answer, beside those of all.
+            bare: it is a module of ours, which is sent without its comments.
         """
-        content = self._read(file, entry)
+        content = self._read(file, entry, bare)
         sent = self._headers | {"ETag": content.tag, "Vary": "Accept-Encoding"} | dict(headers)
         if content.tag in request.headers.get("if-none-match", ""):
             return Response(status_code=304, headers=sent)
@@ -59,19 +70,26 @@ class PageFiles:
             body, sent["Content-Encoding"] = content.packed, "gzip"
         return Response(body, headers=sent, media_type=media_type)
 
-    def _read(self, file: Path, entry: str) -> _Content:
+    def _read(self, file: Path, entry: str, bare: bool) -> _Content:
         state = file.stat()
         version = state.st_mtime_ns, state.st_size
         known, content = self._contents.get(file, (None, None))
         if known == version and content is not None and not entry:
             return content
         plain = file.read_bytes()
+        if bare:
+            plain = without_comments(plain)
         if entry:
             plain = plain.replace(PRELOAD.encode(), _preload_links(file.parent, entry).encode())
         packed = gzip.compress(plain, mtime=0) if len(plain) > LEAST_COMPRESSED else b""
         content = _Content(plain, packed, f'"{hashlib.sha256(plain).hexdigest()[:32]}"')
         self._contents[file] = version, content
         return content
+
+
+def without_comments(module: bytes) -> bytes:
+    """Return the text of a module with empty lines where comments have lines to themselves."""
+    return COMMENTS.sub(lambda comment: b"\n" * comment[0].count(b"\n"), module)
 
 
 def _preload_links(folder: Path, entry: str) -> str:

@@ -16,6 +16,7 @@ from teachpath.api.assessments import assessments_router
 from teachpath.api.audit import AuditRequests, audit_router
 from teachpath.api.authority import authority_router
 from teachpath.api.calibrations import calibrations_router
+from teachpath.api.compressed_documents import CompressedDocuments
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
 from teachpath.api.demonstrations import demonstrations_router
@@ -99,6 +100,7 @@ def _add_guards(app: FastAPI, parts: Parts) -> None:
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     web = parts.settings.web
     hosts = ["127.0.0.1", "localhost", "[::1]", *({web.host} - UNSPECIFIED), *web.hosts]
+    app.add_middleware(CompressedDocuments)
     app.add_middleware(HeadRequests)
     app.add_middleware(RevocableSockets, access=parts.access)
     if parts.access.mode == "none":

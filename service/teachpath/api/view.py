@@ -33,6 +33,9 @@ HEADERS: Final = {
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-cache",
 }
+# What a page loads obeys the policy of the page; only documents, and threads of a page, have their own.
+PART_HEADERS: Final = {name: HEADERS[name] for name in ("X-Content-Type-Options", "Cache-Control")}
+THREADS: Final = ("hand/sample_worker.js",)  # scripts that the page runs as threads
 HTML: Final = "text/html; charset=utf-8"
 MEDIA: Final = {
     ".js": "text/javascript; charset=utf-8",
@@ -54,10 +57,13 @@ def view_router(preview: Preview) -> APIRouter:
     """
     router = APIRouter(include_in_schema=False)
     router.include_router(help_router(help_files()))
-    root, viewer, files = web_files(), viewer_files(), PageFiles(HEADERS)
+    root, viewer = web_files(), viewer_files()
+    files, parts = PageFiles(HEADERS), PageFiles(PART_HEADERS)
 
-    def answer(request: Request, path: Path, suffix: str) -> Response:
-        return files.answer(request, path, MEDIA[suffix]) if path.is_file() else _missing(path.name)
+    def answer(request: Request, path: Path, suffix: str, *, bare: bool = False) -> Response:
+        is_thread = any(path == root / name for name in THREADS)
+        sender = files if is_thread else parts
+        return sender.answer(request, path, MEDIA[suffix], bare=bare) if path.is_file() else _missing(path.name)
 
     @router.get("/", dependencies=OPEN)
     def page(request: Request) -> Response:
@@ -83,7 +89,8 @@ def view_router(preview: Preview) -> APIRouter:
             return _missing(name)
         if path.suffix not in MEDIA or not path.is_relative_to(root.resolve()):
             return _missing(name)
-        return answer(request, path, path.suffix)
+        is_ours = path.suffix == ".js" and not path.is_relative_to(root.resolve() / "vendor")
+        return answer(request, path, path.suffix, bare=is_ours)
 
     @router.get("/vendor/{name}", dependencies=OPEN)
     def vendored(request: Request, name: str) -> Response:

@@ -47,10 +47,15 @@ def read_trajectory(recordings: Recordings, demonstration: Demonstration, carrie
 
 
 def encode_trajectory(
-    recordings: Recordings, demonstration: Demonstration, carried: Vector | None, max_points: int
+    recordings: Recordings,
+    demonstration: Demonstration,
+    carried: Vector | None,
+    max_points: int,
+    decimals: int | None = None,
 ) -> bytes:
-    """Return the JSON of a trajectory with at most so many points; as `read_trajectory`."""
-    return encode(read_trajectory(recordings, demonstration, carried).thinned(max_points))
+    """Return the JSON of a trajectory with at most so many points and decimals; as `read_trajectory`."""
+    trajectory = read_trajectory(recordings, demonstration, carried).thinned(max_points)
+    return encode(trajectory if decimals is None else trajectory.rounded(decimals))
 
 
 def reassess_recording(
