@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.contract.desk import csv
 from tests.system.access import barriers
 from tests.system.processes import Service
 from tests.system.test_view import Visit
@@ -136,3 +137,33 @@ def test_a_file_that_is_dropped_anywhere_on_the_page_is_looked_at(visit: Visit) 
     visit.page.get_by_role("button", name="Leave all out").click()
     until(visit, f"!document.querySelector('{CARDS}')")
     assert visit.said == []
+
+
+def test_a_demonstration_is_trimmed_on_its_curve_and_laid_beside_another(visit: Visit, service: Service) -> None:
+    station, page = service.station, visit.page
+    for name, rise in (("one.csv", 0.0), ("two.csv", 0.001)):
+        station.import_file("trimmed", csv(100, step=0.003, rise=rise).encode(), name=name, scene="empty")
+    page.wait_for_selector("#task option[value=trimmed]", state="attached")
+    page.select_option("#task", "trimmed")
+    page.locator("#closeup-one").fill("1")
+    page.locator("#closeup-one").blur()
+    begin = page.get_by_role("slider", name="When the object is taken")
+    begin.focus()
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    trim = page.get_by_role("button", name="Trim to the marks")
+    before = station.demonstrations("trimmed")[0]
+    trim.click()
+    page.locator("#message:has-text('Demonstration 1 goes from 0.06 to')").wait_for()
+    first, last = before.trim or (before.grasp, before.release)
+    assert station.demonstrations("trimmed")[0].trim == (first + 3, last)
+    until(visit, "document.querySelector('[data-trim]').disabled")  # the curve as it is now
+    page.locator("#message").get_by_role("button", name="Undo").click()
+    visit.wait(lambda: station.demonstrations("trimmed")[0].trim is None)
+    page.locator("#closeup-other").fill("2")
+    page.locator("#closeup-other").blur()
+    page.locator("#closeup").get_by_text("Apart by").wait_for()
+    page.locator("#closeup").get_by_role("img", name="Apart by").wait_for()
+    page.locator("#closeup-other").fill("77")
+    page.locator("#closeup-other").blur()
+    page.locator("#closeup").get_by_text("There is no demonstration 77.").wait_for()

@@ -1,4 +1,5 @@
 // Demonstrate: the page's own hand, what is being recorded, and the demonstrations so far with their verdicts.
+import { demonstrationCloseup } from "./demonstration_closeup.js";
 import { demonstrationList } from "./demonstration_list.js";
 import { demonstrationPanel } from "./demonstration_panel.js";
 import { importFiles } from "./import_files.js";
@@ -13,6 +14,7 @@ const demonstrate = sectionedPanel("demonstrate", "Demonstrate", [
   ["recordings", "Recording", recordingList],
   ["import-files", "From files", importFiles],
   ["demonstrations", "Demonstrations", demonstrationList],
+  ["closeup", "Trim and compare", demonstrationCloseup],
 ]);
 
 // For tests: the headset that is worn now, or null, and the demonstration session, or null.
