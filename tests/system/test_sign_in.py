@@ -14,6 +14,7 @@ from teachpath.records import Capability, Person
 from tests.contract import stations
 from tests.identity_provider import CLIENT, SECRET, running
 from tests.system.processes import Service
+from tests.system.stop_places import stop_faults
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
@@ -37,7 +38,7 @@ def test_a_person_signs_in_sees_what_is_missing_and_signs_out(browser: Any, serv
     page.set_default_timeout(1000 * HANG)
     page.goto(service.url)
     page.wait_for_selector("#sign-in form")
-    assert page.is_visible("#stop")
+    assert stop_faults(page, "not signed in") == []
     assert not page.is_visible("main")
     assert not page.is_visible("#access-button")
     page.fill("#sign-in-name", "anna")

@@ -25,6 +25,7 @@ from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.logins import Login, Role, find_login
 from tests.system.access import barriers
 from tests.system.processes import Service, run, stop_arm
+from tests.system.stop_places import stop_faults
 from tests.system.test_lateness import executor, ready_plan
 from tests.system.test_view import KEYS, Server, Visit
 from tests.waiting import HANG, wait_until
@@ -99,10 +100,25 @@ def test_the_page_says_not_stopped_until_the_executor_confirms_it(browser: Any, 
     visit = Visit(browser, server.address)
     visit.page.locator("#stop").click()
     wait_not_stopped(visit)
+    assert stop_faults(visit.page, "not stopped") == []
     assert barriers(visit.page, "not stopped") == []
     server.start_executor()
     wait_confirmed(visit)
     visit.page.close()
+
+
+def test_stop_is_in_reach_while_the_page_connects(browser: Any, server: StopServer) -> None:
+    page = browser.new_page()
+    page.set_default_timeout(1000 * HANG)
+    page.route_web_socket("**/api/v1/*", lambda socket: None)  # open, and nobody says anything
+    page.goto(server.address)
+    page.wait_for_selector("html[data-connection=connecting][data-events=connecting]", state="attached")
+    assert stop_faults(page, "connecting") == []
+    page.locator("#stop").click()
+    page.wait_for_selector("#not-stopped:not([hidden])")
+    server.start_executor()
+    page.wait_for_selector("#not-stopped", state="hidden")
+    page.close()
 
 
 @pytest.fixture(scope="module")
@@ -136,6 +152,7 @@ def test_an_executor_that_does_not_answer_is_said_to_be_not_stopped(
     visit = Visit(browser, service.url)
     execution = begin(service, plan)
     visit.wait(lambda: visit.page.evaluate("teachpath.state().executor?.state") == "following")
+    assert stop_faults(visit.page, "executing") == []
     pid = executor(service)
     os.kill(pid, signal.SIGSTOP)
     try:
