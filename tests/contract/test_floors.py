@@ -215,6 +215,11 @@ def test_ruckigs_network_service_is_never_asked() -> None:
                 "mujoco",
                 "meshcat",
                 "cryptography",
+                # of the standard library, which every `--help` would wait for
+                "asyncio",
+                "logging.handlers",
+                "ssl",
+                "tomllib",
             },
         ),
         ("teachpath.simulator.loop", {"scipy.linalg", "numba", "hmmlearn", "sqlalchemy", "fastapi"}),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import getpass
 import json
 import os
 from contextlib import suppress
@@ -58,6 +57,8 @@ def export(config: Config = None, data: Data = None) -> None:
 
 def note(settings: Settings, action: str) -> None:
     """Write into the audit log what this user did on the command line; where it cannot be written, it is said."""
+    import getpass
+
     from teachpath.io.audit_log import Happening
 
     if not Path(settings.store.data_dir).is_dir():

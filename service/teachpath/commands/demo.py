@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import socket
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
@@ -40,7 +39,7 @@ def demo(
 
     A hand in a process of its own shows the paper's first experiment over Zenoh: twelve demonstrations, three ways
     around two obstacles. They are recorded, clustered and fitted; the first executable path is certified, and the
-    simulated arm carries the box along it while you watch in the browser.
+    simulated arm carries the block along it while you watch in the browser.
     """
     from rich.console import Console
 
@@ -91,6 +90,8 @@ def demo_settings(config: Path | None, folder: Path, port: int | None, arm: str)
 
 
 def _is_free(port: int) -> bool:
+    import socket
+
     try:
         socket.create_server(("127.0.0.1", port)).close()
     except OSError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import sys
 import threading
@@ -14,14 +13,12 @@ import typer
 
 from teachpath.commands.options import Config, Data, motion_arm, settings_of, web_address, with_arm
 from teachpath.errors import UnusableSettings
-from teachpath.logs import LogSettings, log_to_stderr
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
 
 if TYPE_CHECKING:
     from teachpath.instructions import Instructions
-
-log: logging.Logger = logging.getLogger("teachpath")
+    from teachpath.logs import LogSettings
 
 PARTS = {Role.EXECUTOR: "executor", Role.ROBOT: "simulator"}  # names of the processes in the log
 
@@ -139,6 +136,7 @@ def _instructions(config: Path | None, attached: bool, role: Role) -> Instructio
     from teachpath.config import load
     from teachpath.instructions import Instructions, from_instructions
     from teachpath.io.bus_logins import local_login
+    from teachpath.logs import log_to_stderr
 
     log_to_stderr(part=PARTS[role], attached=attached)
     if attached:
@@ -167,6 +165,8 @@ def _leave_with_parent(stop: threading.Event, attached: bool) -> None:
 
 
 def _log(settings: LogSettings) -> None:
+    from teachpath.logs import log_to_stderr
+
     try:
         log_to_stderr(settings)
     except OSError as error:

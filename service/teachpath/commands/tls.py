@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import socket
-import ssl
 from datetime import UTC, datetime
 from ipaddress import ip_address
 from typing import TYPE_CHECKING, Annotated
@@ -57,6 +54,8 @@ def init(
     made = files.prepare_web_authority(folder, hosts, now)
     expiry = files.issue_web_certificate(folder, hosts, now)
     authority = (folder / f"{files.AUTHORITY}.pem").read_text()
+    import hashlib
+
     known_as = hashlib.sha256(str(folder.absolute()).encode()).hexdigest()[:16]
     write_private(authorities_folder() / f"{known_as}.pem", authority)
     note(settings, f"make a certificate for {', '.join(hosts)}")
@@ -82,11 +81,16 @@ def init(
 
 def fingerprint(authority: str) -> str:
     """Return the SHA-256 of a certificate in PEM, as devices show it."""
+    import hashlib
+    import ssl
+
     return hashlib.sha256(ssl.PEM_cert_to_DER_cert(authority)).digest().hex(":").upper()
 
 
 def _hosts(settings: WebSettings, further: list[str]) -> list[str]:
     """Return every name and address of the certificate once, in order."""
+    import socket
+
     here = [socket.gethostname().lower()]
     bound = [] if settings.host in UNSPECIFIED else [settings.host]
     hosts = [*LOOPBACK, *here, *bound, *settings.hosts, *further]
