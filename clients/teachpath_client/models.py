@@ -543,7 +543,8 @@ class ExecutorStatus:
         lateness_p99_us: 99th percentile of the lateness of a cycle [us].
         lateness_max_us: largest lateness of a cycle [us].
         limit_use: largest share of a joint limit used by the setpoints sent.
-        tracking_error: largest that the arm has reported [rad].
+        tracking_error: farthest that the arm was off its setpoints, or by its own account off what it wanted
+            [rad].
         limit_place: where limit_use was reached, in words.
         duration: from the first setpoint to the newest [s].
         length: how far along the path the tool is [m].
@@ -716,6 +717,7 @@ class Health:
         guidance: what the operator should do next.
         executor: None until it has said something.
         notes: in words, what needs somebody.
+        display_name: what people call the station; empty: nobody said.
     """
 
     version: str
@@ -729,6 +731,7 @@ class Health:
     guidance: Advice
     executor: ExecutorStatus | None
     notes: list[str]
+    display_name: str
 
 
 @dataclass(frozen=True)
@@ -1482,6 +1485,7 @@ class Scene:
         floor: height of the floor [m, world]; the arm's foot stands at 0.
         keep_in: boxes that arm, gripper and carried object stay inside.
         keep_out: shapes of any kind that they stay out of.
+        display_name: what people call it; empty: its name. Plans hold whatever it is called.
     """
 
     name: str
@@ -1490,6 +1494,7 @@ class Scene:
     floor: float = 0.0
     keep_in: list[Shape] = field(default_factory=list)
     keep_out: list[Shape] = field(default_factory=list)
+    display_name: str = ""
 
 
 @dataclass(frozen=True)
@@ -1803,6 +1808,7 @@ class Task:
             where the scene has it.
         archived_ns: when it was deleted [ns since the Unix epoch]; 0: it was not. All of it is kept, and can be
             brought back.
+        display_name: what people call it; empty: its name.
     """
 
     name: str
@@ -1811,6 +1817,7 @@ class Task:
     created_ns: int
     object_at_grasp: bool = False
     archived_ns: int = 0
+    display_name: str = ""
 
 
 @dataclass(frozen=True)

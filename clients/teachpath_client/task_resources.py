@@ -60,14 +60,15 @@ class TaskResources(Rest):
 
         Args:
             name: of the scene.
-            scene: obstacles, carried, floor, keep_in, keep_out, as `PUT /scenes/{scene}` takes them.
+            scene: obstacles, carried, floor, keep_in, keep_out, display_name, as `PUT /scenes/{scene}` takes them.
             options: base, author, note.
         """
         return self._ask(SceneVersion, "PUT", f"/scenes/{name}", dict(scene) | options)
 
-    def copy_scene(self, name: str, copy: str) -> SceneVersion:
-        """Keep a scene under another name too."""
-        return self._ask(SceneVersion, "POST", f"/scenes/{name}/copies", {"name": copy})
+    def copy_scene(self, name: str, copy: str, *, display_name: str = "") -> SceneVersion:
+        """Keep a scene under another name too, and say what people call the copy (empty: by that name)."""
+        body = {"name": copy, "display_name": display_name}
+        return self._ask(SceneVersion, "POST", f"/scenes/{name}/copies", body)
 
     def remove_scene(self, name: str) -> SceneVersion:
         """Remove a scene that no task is done in; its versions stay."""
@@ -136,7 +137,13 @@ class TaskResources(Rest):
         return self._ask(Task, "GET", f"/tasks/{task}")
 
     def make_task(
-        self, task: str, *, scene: str = "", calibration: str = "", object_at_grasp: bool | None = None
+        self,
+        task: str,
+        *,
+        scene: str = "",
+        calibration: str = "",
+        object_at_grasp: bool | None = None,
+        display_name: str = "",
     ) -> Task:
         """Make a task. One that exists stays as it is; it is refused (409) where it is not as asked.
 
@@ -145,8 +152,11 @@ class TaskResources(Rest):
             scene: what stands around the arm; empty: paper.
             calibration: of the tracker's frame; empty: identity.
             object_at_grasp: whether the object lies where the hand grasps; None: it does not.
+            display_name: what people call it, e.g. "Küche räumen"; `teachpath_proto.display_names.id_of` makes a name
+                of that. Empty: its name.
         """
-        wanted = {"scene": scene or None, "calibration": calibration or None, "object_at_grasp": object_at_grasp}
+        wanted: dict[str, object] = {"scene": scene or None, "calibration": calibration or None}
+        wanted |= {"object_at_grasp": object_at_grasp, "display_name": display_name or None}
         body = {name: value for name, value in wanted.items() if value is not None}
         return self._ask(Task, "PUT", f"/tasks/{task}", body)
 
@@ -158,9 +168,10 @@ class TaskResources(Rest):
         """Bring back a task that was deleted."""
         return self._ask(Task, "POST", f"/tasks/{task}/restore")
 
-    def rename_task(self, task: str, name: str) -> Task:
-        """Give a task another name, with all that is of it."""
-        return self._ask(Task, "PATCH", f"/tasks/{task}", {"name": name})
+    def rename_task(self, task: str, name: str = "", *, display_name: str | None = None) -> Task:
+        """Give a task another name, with all that is of it, or another display name; what is left out stays."""
+        changes = {"name": name or task, "display_name": display_name}
+        return self._ask(Task, "PATCH", f"/tasks/{task}", changes)
 
     def demonstrations(self, task: str) -> list[Demonstration]:
         """List a task's demonstrations in their order; `pages` gives a long list bit by bit."""

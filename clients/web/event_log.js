@@ -65,7 +65,9 @@ function connectionWatcher() {
  */
 export function taskListChanges(before, now) {
   if (before === now || !before || !now) return [];
-  const [former, present] = [before, now].map((tasks) => new Map(tasks.map((task) => [task.created_ns, task.name])));
+  const [former, present] = [before, now].map(
+    (tasks) => new Map(tasks.map((task) => [task.created_ns, task.display_name || task.name])),
+  );
   const newest = Math.max(0, ...former.keys());
   const come = [...present].flatMap(([made, name]) => {
     const old = former.get(made);

@@ -1,5 +1,6 @@
 // The header: which task, who holds control, what the arm does, and the stop button, which says until it is confirmed that it is not.
-import { element, option } from "./elements.js";
+import { offerNamed } from "./display_names.js";
+import { element } from "./elements.js";
 import { stateText } from "./panels/arm_state.js";
 import { patchChildren } from "./patch_children.js";
 import { activeExecution, changesAny } from "./store.js";
@@ -58,10 +59,8 @@ export function stopButton({ messages }, armStop, { stop, warning }) {
 
 /** @param {HTMLSelectElement} select @param {State} state */
 function choose(select, state) {
-  const names = (state.tasks ?? []).map((task) => task.name);
-  if ([...select.options].map(({ value }) => value).join("\n") !== names.join("\n")) {
-    select.replaceChildren(...names.map((name) => option(name)));
-  }
+  const tasks = state.tasks ?? [];
+  offerNamed(select, tasks);
   select.value = state.task;
-  if (select.parentElement) select.parentElement.hidden = names.length === 0;
+  if (select.parentElement) select.parentElement.hidden = tasks.length === 0;
 }

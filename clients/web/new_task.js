@@ -1,11 +1,13 @@
 // A new task: its name and the scene that it is done in, in a popover of the header.
 import { get, put, resourcePath } from "./api.js";
-import { element, hint, option } from "./elements.js";
-import { isName, nameRefusal } from "./names.js";
+import { displayNameOf, idOf, nameField, offerNamed } from "./display_names.js";
+import { element, hint } from "./elements.js";
 
 /** @param {HTMLElement} place @param {Context} context */
 export function newTaskDialog(place, { store, eventStream, attempt, open }) {
   const name = element("input", { type: "text", id: "new-name", required: "", autocomplete: "off" });
+  const id = element("p", { class: "note" });
+  const showId = nameField(name, id);
   const scene = element("select", { id: "new-scene" });
   const anywhere = element("input", { type: "checkbox", id: "new-object-at-grasp" });
   const form = element(
@@ -16,21 +18,18 @@ export function newTaskDialog(place, { store, eventStream, attempt, open }) {
       "What is shown from now on for another purpose is learned on its own. The scene says what stands around the arm.",
     ),
     element("p", { class: "field" }, element("label", { for: "new-name" }, "Name"), name),
+    id,
     element("p", { class: "field" }, element("label", { for: "new-scene" }, "Scene"), scene),
     element("p", { class: "field" }, element("label", {}, anywhere, " The object lies elsewhere each time")),
     hint("Each demonstration then begins where the hand grasps it, not where the scene has it."),
     element("p", { class: "buttons" }, element("button", { type: "submit", class: "primary" }, "Make the task")),
   );
   place.append(form);
-  name.addEventListener("input", () => {
-    const wanted = name.value.trim();
-    name.setCustomValidity(wanted === "" || isName(wanted) ? "" : nameRefusal("task", wanted));
-  });
   let chosen = ""; // by the person, since the popover was opened; whatever comes later leaves it
   /** @param {Scene[]} scenes */
   const offer = (scenes) => {
     const used = store.state.tasks?.find((task) => task.name === store.state.task)?.scene;
-    scene.replaceChildren(...scenes.map((one) => option(one.name)));
+    offerNamed(scene, scenes);
     scene.value = [chosen, used].find((one) => scenes.some((other) => other.name === one)) ?? scenes[0]?.name ?? "";
   };
   scene.addEventListener("change", () => {
@@ -52,13 +51,16 @@ export function newTaskDialog(place, { store, eventStream, attempt, open }) {
   });
 
   async function make() {
-    const wanted = name.value.trim();
+    const called = name.value.trim();
+    const wanted = idOf(called);
     if (store.state.tasks?.some((task) => task.name === wanted))
       throw new Error(`There is a task ${wanted} already: choose it above, or give another name.`);
-    await put(resourcePath("tasks", wanted), { scene: scene.value, object_at_grasp: anywhere.checked });
+    const made = { scene: scene.value, object_at_grasp: anywhere.checked, display_name: displayNameOf(called) };
+    await put(resourcePath("tasks", wanted), made);
     await eventStream.read("tasks");
-    if (name.value.trim() !== wanted) return; // another one is named meanwhile
+    if (name.value.trim() !== called) return; // another one is named meanwhile
     name.value = "";
+    showId();
     anywhere.checked = false;
     if (!place.matches(":popover-open")) return; // it was left meanwhile
     store.set({ task: wanted });

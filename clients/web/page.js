@@ -73,6 +73,9 @@ function showMissing(identity) {
 /** Show the links to what the station has. @param {State["station"]} station */
 function showStation(station) {
   byId("trust").hidden = !station?.authority;
+  const name = station?.display_name || "teachpath";
+  byId("station-name").textContent = name;
+  document.title = name === "teachpath" ? name : `${name} – teachpath`;
   for (const link of help) link.hidden = !station?.documents;
 }
 

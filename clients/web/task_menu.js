@@ -1,8 +1,8 @@
 // What is done with the chosen task as a whole, in a popover of the header: rename it, delete it; and bring back deleted ones.
 import { getList, patch, post, remove, resourcePath } from "./api.js";
+import { displayNameOf, idOf, nameField, taskTitle } from "./display_names.js";
 import { block, blocked, closestData, element, hint } from "./elements.js";
 import { missingSentence } from "./identity.js";
-import { isName, nameRefusal } from "./names.js";
 import { patchChildren } from "./patch_children.js";
 import { changesAny } from "./store.js";
 import { formatMoment } from "./texts.js";
@@ -32,6 +32,8 @@ class TaskMenu {
     this.messages = messages;
     this.title = element("h2", {});
     this.name = element("input", { type: "text", id: "other-task-name", required: "", autocomplete: "off" });
+    this.id = element("p", { class: "note" });
+    this.showId = nameField(this.name, this.id);
     this.renameButton = element("button", { type: "submit" }, "Rename");
     this.deleteButton = element("button", { type: "button" }, "Delete the task");
     this.why = element("p", { class: "note" });
@@ -39,14 +41,10 @@ class TaskMenu {
     this.refusal = element("p", { class: "error", role: "alert" });
     const field = element("p", { class: "field" }, element("label", { for: "other-task-name" }, "New name"), this.name);
     field.append(this.renameButton);
-    const form = element("form", {}, field);
+    const form = element("form", {}, field, this.id);
     const buttons = element("p", { class: "buttons" }, this.deleteButton);
     place.append(this.title, form, buttons, this.why, this.refusal);
     place.append(element("h2", {}, "Deleted tasks"), this.deletedList);
-    this.name.addEventListener("input", () => {
-      const wanted = this.name.value.trim();
-      this.name.setCustomValidity(wanted === "" || isName(wanted) ? "" : nameRefusal("task", wanted));
-    });
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       this.#attempt(() => this.#rename(store.state.task, this.name.value.trim()));
@@ -68,8 +66,12 @@ class TaskMenu {
   /** @param {State} state @param {boolean} isOther whether another task is meant than before */
   update(state, isOther) {
     const why = changeRefusal(state);
-    this.title.textContent = state.task ? `Task ${state.task}` : "No task";
-    if (isOther) [this.name.value, this.refusal.textContent] = [state.task, ""];
+    const title = taskTitle(state.tasks, state.task);
+    this.title.textContent = title ? `Task ${title}` : "No task";
+    if (isOther) {
+      [this.name.value, this.refusal.textContent] = [title, ""];
+      this.showId();
+    }
     for (const control of [this.name, this.renameButton, this.deleteButton]) block(control, why);
     this.why.textContent = why || ABOUT_DELETING;
     this.#renderDeleted();
@@ -102,30 +104,33 @@ class TaskMenu {
     }
   }
 
-  /** @param {string} task @param {string} to */
-  async #rename(task, to) {
-    if (task === to) return;
-    await patch(resourcePath("tasks", task), { name: to });
+  /** @param {string} task @param {string} called what people call it from now on */
+  async #rename(task, called) {
+    const before = taskTitle(this.store.state.tasks, task);
+    if (before === called) return;
+    const to = idOf(called);
+    await patch(resourcePath("tasks", task), { name: to, display_name: displayNameOf(called) });
     await this.#choose(to);
-    this.messages.show(`Task ${task} is called ${to} now.`, "note", {
+    this.messages.show(`Task ${before} is called ${called} now.`, "note", {
       label: "Undo",
-      order: () => this.#rename(to, task),
+      order: () => this.#rename(to, before),
     });
   }
 
   /** @param {string} task */
   async #delete(task) {
+    const title = taskTitle(this.store.state.tasks, task);
     await remove(resourcePath("tasks", task));
     await this.eventStream.read("tasks"); // which chooses another one
     const undo = { label: "Undo", order: () => this.#restore(task) };
-    this.messages.show(`Task ${task} is deleted; all of it is kept.`, "note", undo);
+    this.messages.show(`Task ${title} is deleted; all of it is kept.`, "note", undo);
   }
 
   /** @param {string} task */
   async #restore(task) {
     await post(resourcePath("tasks", task, "restore"));
     await this.#choose(task);
-    this.messages.show(`Task ${task} is back.`);
+    this.messages.show(`Task ${taskTitle(this.store.state.tasks, task)} is back.`);
   }
 
   /** Choose a task that the list may not have yet. @param {string} task */
@@ -136,11 +141,11 @@ class TaskMenu {
 }
 
 /** @param {Task} task @param {string} why it cannot be brought back; "": it can */
-function deletedRow({ name, archived_ns }, why) {
+function deletedRow({ name, display_name, archived_ns }, why) {
   return element(
     "li",
     { "data-key": name },
-    element("span", {}, element("b", {}, name), ` deleted ${formatMoment(archived_ns)}`),
+    element("span", {}, element("b", {}, display_name || name), ` deleted ${formatMoment(archived_ns)}`),
     element("button", { type: "button", "data-bring-back": name, ...blocked(why) }, "Bring back"),
   );
 }

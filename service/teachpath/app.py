@@ -137,10 +137,9 @@ class Station:
 
     def _open_recording(self) -> None:
         """Open what knows where the objects lie, and all that records."""
-        settings = self.settings
-        self.store.services.begin()
+        settings, store, tokens, people = self.settings, self.store, self.store.access_tokens, self.store.people
+        store.services.begin()
         self.audit: Audit = Audit(AuditLog(Path(settings.store.data_dir)))
-        store, tokens, people = self.store, self.store.access_tokens, self.store.people
         self.access: Access = Access(
             settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider, proxy=settings.proxy
         )
@@ -247,6 +246,7 @@ class Station:
             guidance=Advice(self._shown.name, self.guidance.advice(self._shown.name)),
             executor=self.executions.status,
             notes=tuple(self.notes()),
+            display_name=self.settings.web.display_name,
         )
 
     def notes(self) -> list[str]:
@@ -263,12 +263,12 @@ class Station:
     def _polls(self) -> dict[str, Poll]:
         """Return by topic how to read the states that no row of the store holds."""
         statuses, trackers, notes = self.recorder.statuses, self.recorder.trackers, self.notes
-        name = self.store.services.station
+        own = self.store.services.station, self.settings.web.display_name
         return {
             "recordings": lambda: {s.tracker: recording_document(s) for s in statuses(with_statistics=True)},
             "trackers": lambda: {t.name: {"announced": t.announced, "silent": t.is_silent} for t in trackers()},
             "guidance": lambda: {task: {"sentence": said} for task, said in self.guidance.all_advice().items()},
-            "station": lambda: {"": asdict(StationState(__version__, notes(), self._authority, has_documents(), name))},
+            "station": lambda: {"": asdict(StationState(__version__, notes(), self._authority, has_documents(), *own))},
             "executor": lambda: {"": asdict(status)} if (status := self.executions.status) else {},
         }
 

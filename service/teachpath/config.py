@@ -39,6 +39,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Scene, SerialArm, Shape
 from teachpath.simulator.settings import SimulatorSettings
 from teachpath.web.settings import WebSettings
+from teachpath_proto.display_names import checked_display_name
 from teachpath_proto.keys import is_name, name_refusal
 
 PREFIX = "TEACHPATH_"
@@ -126,6 +127,10 @@ def load(file: Path | None = None, *, document: dict[str, Any] | None = None) ->
     _check_names("robot", [settings.bus.robot])
     if settings.store.station:
         _check_names("station", [settings.store.station])
+    try:
+        checked_display_name(settings.web.display_name)
+    except ValueError as error:
+        raise UnusableSettings(f"web.display_name: {error}") from None
     if settings.store.recordings:
         check_url(settings.store.recordings)
     check_executor(settings.jobs.executor)

@@ -103,7 +103,7 @@ def test_a_scene_is_copied_removed_and_brought_back(file: Path, url: str) -> Non
         ("s.toml", 'obstacles = [{name = "m", kind = "mesh", file = "none.stl"}]', "cannot read the mesh .*none.stl"),
         ("s.toml", "flor = 0", "there is no field 'flor'; did you mean floor?"),
         ("s.toml", "obstacles = 3", "body.obstacles: it should be a valid list"),
-        ("a b.toml", "floor = 0", "'a b' cannot name a scene"),
+        ("--.toml", "floor = 0", "'--' cannot name a scene"),
     ],
 )
 def test_a_file_that_is_no_scene_is_a_sentence(tmp_path: Path, url: str, name: str, text: str, sentence: str) -> None:

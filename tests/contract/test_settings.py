@@ -208,8 +208,8 @@ def test_the_command_line_ends_with_the_sentence(tmp_path: Path) -> None:
     )
     assert (ended.returncode, ended.stderr) == (
         1,
-        "teachpath: there is no setting web.prot; known here: host, port, hosts, tls, proxies, largest_upload, "
-        "request_timeout, max_connections\n",
+        "teachpath: there is no setting web.prot; known here: host, port, display_name, hosts, tls, proxies, "
+        "largest_upload, request_timeout, max_connections\n",
     )
 
 

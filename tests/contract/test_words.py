@@ -145,3 +145,17 @@ def test_every_kind_of_identifier_of_the_page_is_read(source: str) -> None:
 
 def test_local_variables_may_be_called_as_the_author_likes() -> None:
     assert list(python_identifiers("def f():\n    enough = 3\n    return enough")) == ["f"]
+
+
+def test_the_object_and_an_obstacle_are_never_both_the_box() -> None:
+    page = [p for p in (ROOT / "clients" / "web").rglob("*.js") if "vendor" not in p.parts]
+    documents = [
+        ROOT / "README.md",
+        *(ROOT / "docs").rglob("*.md"),
+        *(ROOT / "service" / "teachpath" / "commands").glob("*.py"),
+    ]
+    assert page
+    for file in page + documents:
+        assert "the box" not in file.read_text().lower(), (
+            f"{file}: say the object (block in scene paper), or the obstacle"
+        )

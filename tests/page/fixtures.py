@@ -25,6 +25,7 @@ from teachpath.motion.arm.puma560 import VARIANTS
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import ToolPose
+from teachpath_proto.display_names import id_of
 from teachpath_proto.keys import is_name, name_refusal
 from teachpath_proto.tracker_pb2 import HandSample, Quaternion, Vector3
 
@@ -33,6 +34,10 @@ TILTED = (math.cos(0.3), 0.6 * math.sin(0.3), 0.8 * math.sin(0.3), 0.0)
 GRASP, CLUTCH = 1, 4  # bits of HandSample.buttons
 
 NAMES = ["demo", "a", "A9", "first-task", "x.y_z-0", "a" * 64]
+DISPLAY_NAMES = [
+    "Küche räumen", " Straße, Halle 3 (Süd)!", "naïve  café", "高台", "Ёлка 2", "Ångström", "Ku\u0308che", "İzmir Ω²",
+    "x" * 63 + " y", "--", "a . . b", "ﬁne œuvre", "एक दो",
+]  # fmt: skip
 NO_NAMES = ["", " ", "-a", ".a", "_a", "a..b", "a/b", "a b", "a\u00e9", "\u4f60", "a" * 65, "a\n", "a\\b"]
 
 
@@ -154,6 +159,11 @@ def names() -> list[dict[str, Any]]:
     ]
 
 
+def display_names() -> list[dict[str, str]]:
+    """What people call things, and the name that is made of each."""
+    return [{"text": text, "id": id_of(text)} for text in NAMES + NO_NAMES + DISPLAY_NAMES]
+
+
 def adaptations() -> list[dict[str, Any]]:
     """Models of paths of one demonstration, of several, and of a closed way, with paths that they predict."""
     chance = np.random.default_rng(3)
@@ -190,6 +200,7 @@ FIXTURES: dict[str, Callable[[], list[dict[str, Any]]]] = {
     "motions": motions,
     "adaptations": adaptations,
     "names": names,
+    "display_names": display_names,
 }
 
 

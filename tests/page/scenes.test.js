@@ -26,7 +26,15 @@ const TABLE = {
   position: [0.6, 0, 0.48],
   orientation: [1, 0, 0, 0],
 };
-const SCENE = { name: "cell", obstacles: [TABLE], carried: null, floor: 0, keep_in: [], keep_out: [] };
+const SCENE = {
+  name: "cell",
+  display_name: "Cell 3",
+  obstacles: [TABLE],
+  carried: null,
+  floor: 0,
+  keep_in: [],
+  keep_out: [],
+};
 const VERSION = { scene: "cell", number: 3 };
 
 test("what is new lies on the table, has a name of its own, and is there alone", () => {

@@ -12,7 +12,7 @@ def tab(visit: Visit, name: str) -> None:
 
 
 def rename_delete_and_undo(visit: Visit, service: Service, other: str) -> None:
-    """Rename the chosen task `another`, not as `other` is called; delete it, and bring it back in both ways."""
+    """Call the chosen task `another` Grüne Kiste, not as `other`; delete it, and bring it back in both ways."""
     page, menu, name = visit.page, visit.page.locator("#task-menu"), visit.page.locator("#other-task-name")
 
     def stands(said: str, *, chosen: str = "", deleted: str = "") -> None:
@@ -29,16 +29,19 @@ def rename_delete_and_undo(visit: Visit, service: Service, other: str) -> None:
         menu.get_by_role("button", name=button).click()
 
     page.locator("#task-menu-button").click()
-    name.fill("two words")
-    assert "cannot name a task" in name.evaluate("one => one.validationMessage")
+    name.fill("--")
+    assert "at least one letter or digit" in name.evaluate("one => one.validationMessage")
     name.fill(other)
     name.press("Enter")
     menu.locator(f".error:has-text('there is a task {other} already')").wait_for()
-    name.fill("renamed")
+    name.fill("Grüne Kiste")
+    menu.get_by_text("In addresses and commands: gruene-kiste").wait_for()
     name.press("Enter")
-    stands("Task another is called renamed now.", chosen="renamed")
+    stands("Task another is called Grüne Kiste now.", chosen="gruene-kiste")
+    assert page.locator("#task option:checked").inner_text() == "Grüne Kiste"
+    assert service.station.get_task("gruene-kiste").display_name == "Grüne Kiste"
     undo()
-    stands("Task renamed is called another now.", chosen="another")
+    stands("Task Grüne Kiste is called another now.", chosen="another")
     order("Delete the task")
     stands("Task another is deleted; all of it is kept.", deleted="another")
     undo()
@@ -77,20 +80,21 @@ def edit_the_scene(visit: Visit, service: Service) -> None:
     message.get_by_text("Scene empty is as it was before").wait_for()
     assert len(service.station.get_scene("empty").scene.obstacles) == 1
     page.locator("#scene-undo:enabled").click()
-    page.locator("#scene-save-name").fill("a b")
+    page.locator("#scene-save-name").fill("--")
     page.locator("#scene-save").click()
-    message.locator(".error:has-text('cannot name a scene')").wait_for()
-    page.locator("#scene-save-name").fill("mine")
+    message.locator(".error:has-text('at least one letter or digit')").wait_for()
+    page.locator("#scene-save-name").fill("Halle 3 (Süd)")
     page.locator("#scene-save").click()
-    message.get_by_text("Scene mine is made").wait_for()
-    assert "mine" in [scene.name for scene in service.station.scenes()]
+    message.get_by_text("Scene Halle 3 (Süd) is made").wait_for()
+    called = {scene.name: scene.display_name for scene in service.station.scenes()}
+    assert called["halle-3-sued"] == "Halle 3 (Süd)"
     page.locator("#scene-remove").click()
-    message.get_by_text("Scene mine is removed").wait_for()
-    assert "mine" not in [scene.name for scene in service.station.scenes()]
+    message.get_by_text("Scene Halle 3 (Süd) is removed").wait_for()
+    assert "halle-3-sued" not in [scene.name for scene in service.station.scenes()]
     message.get_by_role("button", name="Undo").click()
-    message.get_by_text("Scene mine is back").wait_for()
-    assert len(service.station.get_scene("mine").scene.obstacles) == 3
-    assert page.locator("#scene-name").input_value() == "mine"
+    message.get_by_text("Scene Halle 3 (Süd) is back").wait_for()
+    assert len(service.station.get_scene("halle-3-sued").scene.obstacles) == 3
+    assert page.locator("#scene-name").input_value() == "halle-3-sued"
     tab(visit, "run")  # the view shows what the task is done in again
     visit.wait(lambda: not any(path.startswith("/scene/box") for path in visit.paths()))
 

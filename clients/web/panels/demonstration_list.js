@@ -65,7 +65,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
     if (!readOnly) sceneLayers.trajectories.request(shown);
     tools.update(all.length > FEW, groupsWithWays(ways));
     patchChildren(head, summary(state));
-    const others = (state.tasks ?? []).map(({ name }) => name).filter((name) => name !== state.task);
+    const others = (state.tasks ?? []).filter(({ name }) => name !== state.task);
     patchChildren(several, !readOnly && all.length > 1 && selection.toolbar(found, others));
     const scrolled = rows.querySelector("ol")?.scrollTop ?? 0;
     patchChildren(

@@ -1,10 +1,10 @@
 // Demonstrations without a glove: by mouse, touch, keyboard, gamepad or headset, one after the other.
 import { get, patch, put, resourcePath } from "../api.js";
+import { displayNameOf, idOf } from "../display_names.js";
 import { block, closestData } from "../elements.js";
 import { DemonstrationSession } from "../hand/demonstration_session.js";
 import { SAMPLE_RATE } from "../hand/fixed_rate_timer.js";
 import { XrHand, xrUnavailableReason } from "../hand/xr_hand.js";
-import { isName, nameRefusal } from "../names.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
 import { formatNumber, pluralize } from "../texts.js";
@@ -12,8 +12,8 @@ import { createParts, demonstrationRow, senderFacts, sessionText } from "./demon
 import { countFresh, learn, learnButton } from "./learning.js";
 
 const HIDDEN = "The page was hidden, so recording has stopped; what was carried is lost.";
-const KEYS = "Carry the box: Enter grasps and lets go, arrows move, Page Up and Page Down change the height";
-const NOTHING_SHOWN = "Grasp the box, carry it to its goal and let go; each time makes one demonstration.";
+const KEYS = "Carry the object: Enter grasps and lets go, arrows move, Page Up and Page Down change the height";
+const NOTHING_SHOWN = "Grasp the object, carry it to its goal and let go; each time makes one demonstration.";
 
 /** @param {HTMLElement} place @param {Context} context */
 export function demonstrationPanel(place, context) {
@@ -133,9 +133,9 @@ class DemonstrationPanel {
   async #taskAndScene() {
     const { store, eventStream } = this.context;
     if (!store.state.task) {
-      const name = this.parts.name.value.trim() || "first-task";
-      if (!isName(name)) throw new Error(nameRefusal("task", name));
-      await put(resourcePath("tasks", name), { scene: "paper" });
+      const called = this.parts.name.value.trim() || "first-task";
+      const name = idOf(called);
+      await put(resourcePath("tasks", name || called), { scene: "paper", display_name: displayNameOf(called) });
       store.set({ task: store.state.task || name });
       await eventStream.read("tasks");
     }

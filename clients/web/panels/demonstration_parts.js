@@ -6,10 +6,10 @@ import { capitalize, formatNumber } from "../texts.js";
 /** @type {Record<string, string>} */
 const PHASE_TEXTS = {
   countdown: "Get ready …",
-  ready: "Press on the box, carry it to its goal and let go.",
+  ready: "Press on the object, carry it to its goal and let go.",
   carrying: "Carrying. Let go at the goal.",
   judging: "Let go. Waiting for the recorder …",
-  returning: "The box goes back to its start.",
+  returning: "The object goes back to its start.",
   lost: "The connection broke off; what was carried is lost. Connecting again …",
 };
 
@@ -20,7 +20,7 @@ const HELP = [
   ["Keyboard", "Enter grasps and lets go; arrows, Page Up, Page Down"],
   ["Gamepad", "hold A; left stick moves, right stick changes the height"],
 ];
-const ABOUT = "No glove? Carry the box in the view yourself; the recorder takes it like any tracker.";
+const ABOUT = "No glove? Carry the object in the view yourself; the recorder takes it like any tracker.";
 
 export function createParts() {
   /** @param {string} text @param {import("../elements.js").Attributes} attributes */
@@ -52,7 +52,7 @@ export function createParts() {
   const figures = element("div", {});
   const buttons = element("p", { class: "buttons" }, finish, discard, undo);
   const active = element("div", { hidden: "" }, statusText, demonstrations, buttons, figures);
-  const help = element("details", {}, element("summary", {}, "How to carry the box"), definitionList(HELP));
+  const help = element("details", {}, element("summary", {}, "How to carry the object"), definitionList(HELP));
   const idleParts = { idle, start, headset, next, why, name, nameField, seconds };
   return {
     all: [idle, active, help],
@@ -74,7 +74,7 @@ export function createParts() {
 export function sessionText({ phase, note, demonstrations, handModel }) {
   if (phase === "carrying") {
     const obstacle = handModel.collidingObstacle(handModel.position);
-    return obstacle ? `The box is in the ${obstacle}.` : PHASE_TEXTS.carrying;
+    return obstacle ? `The object is in the ${obstacle}.` : PHASE_TEXTS.carrying;
   }
   const last = demonstrations.at(-1);
   const outcome = note || (last && `Take ${last.number}: ${last.verdict}.`) || "";

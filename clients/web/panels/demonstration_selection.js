@@ -96,7 +96,7 @@ export class DemonstrationSelection {
   /**
    * What can be done with what is chosen.
    * @param {Demonstration[]} found by the filter
-   * @param {string[]} others names of the other tasks
+   * @param {Pick<Task, "name" | "display_name">[]} others the other tasks
    */
   toolbar(found, others) {
     if (!this.isOn)
@@ -125,7 +125,7 @@ export class DemonstrationSelection {
             "select",
             { "data-move": "1", "data-key": "move", "aria-label": "Move them to another task", ...blocked(why) },
             option("", "Move to …"),
-            others.map((name) => option(name)),
+            others.map(({ name, display_name }) => option(name, display_name || name)),
           ),
       ),
     ];

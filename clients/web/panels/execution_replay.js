@@ -65,7 +65,7 @@ class ExecutionReplay {
   /** @param {Execution[]} executions */
   async #readNames(executions) {
     const plans = executions.slice(0, MAX_LISTED).flatMap(({ plan }) => (plan ? [plan] : []));
-    if (await this.#names.read(plans)) this.#render(this.context.store.state);
+    if (await this.#names.read(plans, this.context.store.state.tasks)) this.#render(this.context.store.state);
   }
 
   hide() {

@@ -1,5 +1,6 @@
 // Files that other programs wrote: dropped or chosen, looked at, corrected, and imported into the task, all or none.
-import { get, post, resourcePath } from "../api.js";
+import { get, patch, post, resourcePath } from "../api.js";
+import { displayNameOf, idOf, taskTitle } from "../display_names.js";
 import { blocked, closestData, element, hint } from "../elements.js";
 import { fileCard, formatColumns, parseColumns } from "../files/file_card.js";
 import { FileImport, numbered, UNMARKED } from "../files/file_import.js";
@@ -28,6 +29,7 @@ export function importFiles(place, context) {
 }
 
 class ImportPanel {
+  called = ""; // what people call the task that the import makes; "": by its name
   open = ""; // id of the file that is looked at
   /** @type {import("../files/file_card.js").ReaderName[]} */
   readers = [];
@@ -74,7 +76,7 @@ class ImportPanel {
     if (changed.has("connection") && state.connection === "live") this.#readJob();
     if (!changesAny(changed, "task", "tasks")) return;
     if (changed.has("task") && !this.files.job) {
-      this.task.value = state.task;
+      this.task.value = taskTitle(state.tasks, state.task);
       this.files.examineAgain(...this.files.files);
     }
     this.#render();
@@ -86,15 +88,24 @@ class ImportPanel {
     this.#draw();
   }
 
+  /** What the task is called that is imported into. */
+  #title() {
+    const { task, tasks } = this.context.store.state;
+    return this.task.value.trim() || taskTitle(tasks, task) || FIRST_TASK;
+  }
+
+  /** Its name: that of the task which is called so, else the one that is made of it. */
   #task() {
-    return this.task.value.trim() || this.context.store.state.task || FIRST_TASK;
+    const title = this.#title();
+    const called = this.context.store.state.tasks?.find((task) => task.display_name === title);
+    return called?.name ?? (idOf(title) || title);
   }
 
   /** @param {File[]} files */
   async #add(files) {
     if (!files.length || this.files.job) return;
     this.summary = null;
-    if (!this.task.value) this.task.value = this.#task();
+    if (!this.task.value) this.task.value = this.#title();
     const before = new Set(this.files.files);
     this.files.add(files);
     this.open ||= this.files.files.find((file) => !before.has(file))?.id ?? "";
@@ -160,6 +171,7 @@ class ImportPanel {
   async #import() {
     const task = this.#task();
     if (!isName(task)) throw new Error(nameRefusal("task", task));
+    this.called = this.context.store.state.tasks?.some(({ name }) => name === task) ? "" : displayNameOf(this.#title());
     await this.files.begin();
   }
 
@@ -173,6 +185,7 @@ class ImportPanel {
       this.files.files = [];
       this.open = "";
       const { store, eventStream } = this.context;
+      if (this.called) await patch(resourcePath("tasks", job.task), { display_name: this.called });
       await eventStream.read("tasks");
       store.set({ task: job.task });
     } else {

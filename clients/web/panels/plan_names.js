@@ -1,5 +1,6 @@
 // What plans are of, in words: their task, way and version, read once for all that are listed.
 import { get } from "../api.js";
+import { taskTitle } from "../display_names.js";
 
 const MOST = 200; // newest plans and paths that are asked for
 
@@ -15,13 +16,14 @@ export class PlanNames {
   /**
    * Read the names of plans where some are unknown; returns whether any came.
    * @param {string[]} plans
+   * @param {Task[] | null} tasks
    */
-  async read(plans) {
+  async read(plans, tasks) {
     const unknown = plans.filter((plan) => !this.#names.has(plan));
     if (!unknown.length) return false;
     const lists = await Promise.all([get(`plans?limit=${MOST}`), get(`paths?limit=${MOST}`)]).catch(() => null);
     if (!lists) return false; // asked again with the next change
-    const found = planNames(...lists);
+    const found = planNames(...lists, tasks);
     for (const plan of unknown) this.#names.set(plan, found.get(plan) ?? "");
     return true;
   }
@@ -30,14 +32,15 @@ export class PlanNames {
 /**
  * @param {Pick<PlanSummary, "id" | "task" | "path" | "path_version">[]} plans
  * @param {{id: string, cluster: number}[]} paths
+ * @param {Pick<Task, "name" | "display_name">[] | null} tasks
  * @returns {Map<string, string>}
  */
-export function planNames(plans, paths) {
+export function planNames(plans, paths, tasks) {
   const clusters = new Map(paths.map(({ id, cluster }) => [id, cluster]));
   return new Map(
     plans.map(({ id, task, path, path_version }) => {
       const way = clusters.has(path) ? `way ${clusters.get(path)}` : "a path";
-      return [id, `${task}, ${way}, version ${path_version}`];
+      return [id, `${taskTitle(tasks, task)}, ${way}, version ${path_version}`];
     }),
   );
 }

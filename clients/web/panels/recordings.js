@@ -1,5 +1,6 @@
 // The recordings that run and the trackers that are there; what the station has to say.
 import { post, resourcePath } from "../api.js";
+import { taskTitle } from "../display_names.js";
 import { closestData, element, hint } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
@@ -29,18 +30,18 @@ export function recordingList(place, { store, attempt }) {
   });
   return {
     update(state, changed) {
-      if (!changesAny(changed, "recordings", "trackers", "station", "task", "connection")) return;
+      if (!changesAny(changed, "recordings", "trackers", "station", "task", "tasks", "connection")) return;
       patchChildren(place, content(state));
     },
   };
 }
 
 /** @param {State} state @returns {Child} */
-function content({ connection, recordings, trackers, station, task }) {
+function content({ connection, recordings, trackers, station, task, tasks }) {
   if (connection === "lost") return hint(AWAY);
   const idle = trackers.filter(({ name }) => !recordings.some(({ tracker }) => tracker === name));
   const rows = [
-    ...recordings.map((recording) => recordingRow(recording, task)),
+    ...recordings.map((recording) => recordingRow(recording, task, taskTitle(tasks, recording.task))),
     ...idle.map(({ name }) =>
       element("p", { class: "job" }, element("span", { class: "dot there" }), `${name} is here`),
     ),
@@ -49,8 +50,8 @@ function content({ connection, recordings, trackers, station, task }) {
   return rows.length ? rows : hint(NOTHING);
 }
 
-/** @param {ActiveRecording} recording @param {string} task that is chosen */
-function recordingRow(recording, task) {
+/** @param {ActiveRecording} recording @param {string} task that is chosen @param {string} title of the task that is recorded */
+function recordingRow(recording, task, title) {
   const { state, tracker, received, lost } = recording;
   const isHere = recording.task === task;
   const activity = STATE_LABELS[state] ?? PHASE_LABELS[recording.phase] ?? "waiting";
@@ -65,7 +66,7 @@ function recordingRow(recording, task) {
       "p",
       {},
       element("span", { class: `dot ${state || "recording"}` }),
-      `Recording ${tracker}${isHere ? "" : ` for ${recording.task}`}: ${activity}`,
+      `Recording ${tracker}${isHere ? "" : ` for ${title}`}: ${activity}`,
       element("span", { class: "note" }, samples),
     ),
     element(

@@ -1,6 +1,7 @@
 // Scene: what stands around the arm, by numbers; shown in the view before it is saved, and saved as a new version.
 import { ApiError, get, resourcePath } from "../api.js";
-import { block, closestData, element, foldedSection, hint, option, section } from "../elements.js";
+import { offerNamed } from "../display_names.js";
+import { block, closestData, element, foldedSection, hint, section } from "../elements.js";
 import { icon } from "../icons.js";
 import { missingSentence } from "../identity.js";
 import { patchChildren } from "../patch_children.js";
@@ -159,10 +160,8 @@ class ScenePanel {
     this.#drafts.set(name, draft);
     this.#draft = draft;
     this.#versions = versions;
-    const { select } = this.head;
-    if ([...select.options].map(({ value }) => value).join("\n") !== names.join("\n"))
-      select.replaceChildren(...names.map((one) => option(one)));
-    select.value = name;
+    offerNamed(this.head.select, all);
+    this.head.select.value = name;
     this.#render();
   }
 

@@ -244,6 +244,6 @@ export function freeName(scene, wanted) {
  * @param {Scene} scene
  * @param {{base: number, author: string, note: string}} details
  */
-export function sceneBody({ obstacles, carried, floor, keep_in, keep_out }, details) {
-  return { obstacles, carried, floor, keep_in, keep_out, ...details };
+export function sceneBody({ obstacles, carried, floor, keep_in, keep_out, display_name }, details) {
+  return { obstacles, carried, floor, keep_in, keep_out, display_name, ...details };
 }

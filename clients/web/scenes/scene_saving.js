@@ -1,8 +1,8 @@
 // Saving a scene: under which name, by whom and why; and removing it. Each can be undone.
 import { get, put, remove, resourcePath } from "../api.js";
+import { displayNameOf, idOf, MAX_LENGTH, titleOf } from "../display_names.js";
 import { block, element } from "../elements.js";
 import { icon } from "../icons.js";
-import { isName, nameRefusal } from "../names.js";
 import { sceneBody } from "./scene_draft.js";
 
 /** @typedef {import("./scene_draft.js").SceneDraft} SceneDraft */
@@ -27,7 +27,7 @@ export class SceneSaving {
     this.reopen = reopen;
     /** @type {SceneDraft | null} */
     this.draft = null;
-    this.name = textInput("save-name", 64);
+    this.name = textInput("save-name", MAX_LENGTH);
     this.author = textInput("author", 80);
     this.note = textInput("note", 2000);
     this.author.value = localStorage.getItem(AUTHOR_KEY) ?? "";
@@ -60,7 +60,13 @@ export class SceneSaving {
 
   /** Whether it would be saved as another scene. */
   get isOther() {
-    return this.draft !== null && this.name.value.trim() !== this.draft.name;
+    return this.draft !== null && this.#wanted(this.draft) !== this.draft.name;
+  }
+
+  /** The name of the scene that it would be saved as. @param {SceneDraft} draft */
+  #wanted(draft) {
+    const called = this.name.value.trim();
+    return called === titleOf(draft.original) ? draft.name : idOf(called);
   }
 
   /**
@@ -69,7 +75,7 @@ export class SceneSaving {
    * @param {boolean} isLast whether there is no other scene
    */
   show(draft, missing, isLast) {
-    if (draft && draft.name !== this.draft?.name) this.name.value = draft.name;
+    if (draft && draft.name !== this.draft?.name) this.name.value = titleOf(draft.original);
     this.draft = draft;
     block(this.button, missing || (draft?.isEdited || this.isOther ? "" : UNCHANGED));
     block(this.removal, missing || (isLast ? LAST : ""));
@@ -78,11 +84,12 @@ export class SceneSaving {
 
   /** @param {SceneDraft} draft a refusal leaves it as it is */
   async #save(draft) {
-    const [wanted, scene, before] = [this.name.value.trim(), draft.scene, draft.original];
-    if (!isName(wanted)) throw new Error(`${nameRefusal("scene", wanted)}.`);
+    const [wanted, before, called] = [this.#wanted(draft), draft.original, this.name.value.trim()];
+    if (!wanted) throw new Error("Write at least one letter or digit as the scene's name.");
     const [author, note] = [this.author.value, this.note.value];
     localStorage.setItem(AUTHOR_KEY, author);
     const isOther = wanted !== draft.name;
+    const scene = isOther ? { ...draft.scene, display_name: displayNameOf(called) } : draft.scene;
     const place = resourcePath("scenes", wanted);
     /** @type {SceneVersion} */
     const saved = await this.#order(async () => {
@@ -102,9 +109,9 @@ export class SceneSaving {
         return draft.revert();
       });
       await this.reopen(draft.name);
-      this.messages.show(isOther ? `Scene ${wanted} is removed.` : `Scene ${wanted} is as it was before.`);
+      this.messages.show(isOther ? `Scene ${called} is removed.` : `Scene ${called} is as it was before.`);
     };
-    const said = isOther ? `Scene ${wanted} is made.` : `Saved as version ${saved.number} of scene ${wanted}. ${PLANS}`;
+    const said = isOther ? `Scene ${called} is made.` : `Saved as version ${saved.number} of scene ${called}. ${PLANS}`;
     this.messages.show(said, "note", { label: "Undo", order: undo });
   }
 
@@ -113,6 +120,7 @@ export class SceneSaving {
     const place = resourcePath("scenes", draft.name);
     await this.#order(() => remove(place));
     await this.reopen("");
+    const title = titleOf(draft.original);
     const undo = async () => {
       await this.#order(async () => {
         /** @type {SceneVersion[]} */
@@ -125,9 +133,9 @@ export class SceneSaving {
         if (draft.base === former) draft.saved(number, scene);
       });
       await this.reopen(draft.name);
-      this.messages.show(`Scene ${draft.name} is back.`);
+      this.messages.show(`Scene ${title} is back.`);
     };
-    this.messages.show(`Scene ${draft.name} is removed; its versions are kept.`, "note", {
+    this.messages.show(`Scene ${title} is removed; its versions are kept.`, "note", {
       label: "Undo",
       order: undo,
     });

@@ -70,6 +70,7 @@ class StationState:
         authority: whether devices can get the certificate of the station's own authority, at /authority.
         documents: whether the documents were built here, and are at /help.
         name: of this station among those on its store; empty where it has none.
+        display_name: what people call the station; empty: nobody said.
     """
 
     version: str
@@ -77,6 +78,7 @@ class StationState:
     authority: bool
     documents: bool
     name: str
+    display_name: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import AfterValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from teachpath_proto.display_names import MAX_LENGTH, checked_display_name
 from teachpath_proto.keys import NAME, is_name, name_refusal
 
 
@@ -28,6 +29,13 @@ def _checked_if_given(tracker: str) -> str:
     return tracker and _checked(tracker)
 
 
+def _checked_display_name(text: str) -> str:
+    try:
+        return checked_display_name(text)
+    except ValueError as error:
+        raise PydanticCustomError("name", "{sentence}", {"sentence": str(error)}) from None
+
+
 TrackerName = Annotated[
     str, AfterValidator(_checked), WithJsonSchema({"type": "string", "pattern": f"^{NAME.pattern}$"})
 ]
@@ -36,4 +44,7 @@ OutputName = Annotated[
 ]
 TrackerNameOrEmpty = Annotated[
     str, AfterValidator(_checked_if_given), WithJsonSchema({"type": "string", "pattern": f"^({NAME.pattern})?$"})
+]
+DisplayName = Annotated[
+    str, AfterValidator(_checked_display_name), WithJsonSchema({"type": "string", "maxLength": MAX_LENGTH})
 ]

@@ -61,6 +61,7 @@ class Health:
         guidance: what the operator should do next.
         executor: None until it has said something.
         notes: in words, what needs somebody.
+        display_name: what people call the station; empty: nobody said.
     """
 
     version: str
@@ -74,6 +75,7 @@ class Health:
     guidance: Advice
     executor: ExecutorStatus | None
     notes: tuple[str, ...]
+    display_name: str
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from pydantic import Field, Strict
 
 from teachpath.api.access import TEACH, VIEW, Sender, signed
 from teachpath.api.answers import json_response, located, model_of
+from teachpath.api.names import DisplayName
 from teachpath.api.parts import Parts
 from teachpath.api.poses import Coordinate, Position, Quaternion
 from teachpath.api.problems import refusals
@@ -87,6 +88,7 @@ class SceneBody(Body):
         [], max_length=MAX_SHAPES, description="boxes that arm, gripper and carried object stay inside"
     )
     keep_out: list[ShapeBody] = Field([], max_length=MAX_SHAPES, description="shapes of any kind that they stay out of")
+    display_name: DisplayName = Field("", description="what people call it; empty: its name; plans hold all the same")
     base: int | None = Field(
         None, ge=0, description="number of the version that was changed, 0 for a new scene; null: whichever is newest"
     )
@@ -102,6 +104,7 @@ class SceneBody(Body):
             self.floor,
             tuple(shape.shape(f"keep_in.{k}") for k, shape in enumerate(self.keep_in)),
             tuple(shape.shape(f"keep_out.{k}") for k, shape in enumerate(self.keep_out)),
+            self.display_name,
         )
 
 
@@ -109,6 +112,7 @@ class SceneCopy(Body):
     """The copy of a scene."""
 
     name: str = Field(description="of the copy; no scene may have it, or have had it")
+    display_name: DisplayName = Field("", description="what people call the copy; empty: its name")
     author: str = Field("", max_length=80, pattern=LINE_PATTERN, description="who copies it")
 
 
@@ -178,7 +182,7 @@ def _add_changes(router: APIRouter, parts: Parts) -> None:
         """Keep a scene under another name too."""
         if not is_name(copy.name):
             raise UnusableInput(name_refusal("scene", copy.name))
-        made = scenes.copy(scene, copy.name, author=signed(sender, copy.author))
+        made = scenes.copy(scene, copy.name, display_name=copy.display_name, author=signed(sender, copy.author))
         response.headers["Location"] = f"/api/v1/scenes/{copy.name}"
         return made
 

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from teachpath.api.access import DEMONSTRATE, TEACH, VIEW
 from teachpath.api.answers import located, model_of
+from teachpath.api.names import DisplayName
 from teachpath.api.pages import WantedPage
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
@@ -28,12 +29,18 @@ class NewTask(Body):
         False,
         description="the object lies where the hand grasps, anew in each demonstration, not where the scene has it",
     )
+    display_name: DisplayName = Field("", description="what people call it, e.g. Küche räumen; empty: its name")
 
 
 class TaskChanges(Body):
     """What is changed of a task."""
 
-    name: str = Field(description="another one, in all its addresses; recordings keep the name of then")
+    name: str | None = Field(
+        None, description="another one, in all its addresses; recordings keep the name of then; null: as it is"
+    )
+    display_name: DisplayName | None = Field(
+        None, description="what people call it from now on; empty: its name; null: as it is"
+    )
 
 
 def tasks_router(parts: Parts) -> APIRouter:
@@ -65,7 +72,11 @@ def _add_tasks(router: APIRouter, parts: Parts) -> None:
         with named_in_body("calibration"):
             calibration = parts.calibrations.get(new.calibration)
         made = store.ensure_task(
-            task, scene=scene.name, calibration=calibration.name, object_at_grasp=new.object_at_grasp
+            task,
+            scene=scene.name,
+            calibration=calibration.name,
+            object_at_grasp=new.object_at_grasp,
+            display_name=new.display_name,
         )
         _require_same(require_open(made), new)
         return made
@@ -97,13 +108,17 @@ def _add_changes(router: APIRouter, parts: Parts) -> None:
 
     @router.patch("/tasks/{task}", responses=refusals(409, 507) | located(200, "the task"), dependencies=TEACH)
     def rename_task(task: str, wanted: TaskChanges, response: Response) -> Task:
-        """Give a task another name, with all that is of it; `Location` is its address from now on.
+        """Give a task another name, with all that is of it, or another display name; `Location` is its address now.
 
         Its recordings stay in the folder of the name that they were recorded under: their place and hash do not change.
         """
-        _require_name(wanted.name)
-        with recorder.kept_idle(task):
-            renamed = changes.rename(task, wanted.name)
+        name = task if wanted.name is None else wanted.name
+        if name == task:
+            renamed = changes.rename(task, name, wanted.display_name)
+        else:
+            _require_name(name)
+            with recorder.kept_idle(task):
+                renamed = changes.rename(task, name, wanted.display_name)
         if renamed.name != task:
             parts.leave_task(task)
         response.headers["Location"] = f"/api/v1/tasks/{renamed.name}"

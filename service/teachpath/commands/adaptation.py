@@ -10,7 +10,7 @@ import typer
 from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import print_answer
 from teachpath.commands.progress import job_shown, progress_bar
-from teachpath.commands.references import find_path
+from teachpath.commands.references import find_path, id_or_words
 from teachpath.errors import UnusableInput
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def adapted_plan(station: Station, path: str, start: str, goal: str, **options: 
 
 
 def object_(
-    scene: Annotated[str, typer.Argument(help="Name of the scene.")],
+    scene: Annotated[str, typer.Argument(help="The scene, by name or as people call it.", callback=id_or_words)],
     at: Annotated[str, typer.Option(help="Where its object lies: x,y,z [m], or x,y,z,qw,qx,qy,qz.")] = "",
     reset: Annotated[bool, typer.Option("--reset", help="It lies where the scene has it.")] = False,
     url: Url = "",

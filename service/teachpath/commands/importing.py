@@ -16,6 +16,7 @@ from teachpath.commands.audit import note
 from teachpath.commands.options import Config, Data, Json, opened_store, stored_settings
 from teachpath.commands.printing import print_json, verdict_word
 from teachpath.commands.progress import progress_bar
+from teachpath.commands.references import id_or_words
 from teachpath.errors import UnusableRecording
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ Files = Annotated[list[Path], typer.Argument(help="Files to import, folders of f
 
 
 def import_(
-    task: Annotated[str, typer.Argument(help="Task to add demonstrations to; made when missing.")],
+    task: Annotated[str, typer.Argument(help="Task to add demonstrations to; made when missing. Any name will do.")],
     file: Files,
     format: Format = "",
     units: Annotated[str, typer.Option(help="Of the positions: m, cm, mm or in; empty: as the file says.")] = "",
@@ -71,7 +72,7 @@ def import_(
     grasp: Annotated[float | None, typer.Option(help="[s] at which the object is taken; 0: the file begins.")] = None,
     release: Annotated[float | None, typer.Option(help="[s] at which it is put.")] = None,
     whole: Annotated[bool, typer.Option("--whole", help="All of every motion is the transport.")] = False,
-    scene: Annotated[str, typer.Option(help="Scene of a new task.")] = "",
+    scene: Annotated[str, typer.Option(help="Scene of a new task.", callback=id_or_words)] = "",
     calibration: Annotated[str, typer.Option(help="Of the file's frame; empty: that of the task, or identity.")] = "",
     object_at_grasp: AtGrasp = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be made of the files.")] = False,
@@ -93,15 +94,21 @@ def import_(
     options, marks = ReadOptions(units, time, rate, columns, quaternion, track), PhaseMarks(grasp, release, whole)
     check_options("import", format, options)
     found: Sequence[FileReport] | Sequence[FileOutcome]
+    typed, task = task, id_or_words(task)
+    called = typed if typed != task else ""
     with _inputs(file, settings.imports) as (files, exported), opened_store(settings) as store:
         if exported:
             scene, object_at_grasp = scene or exported.scene, object_at_grasp or exported.object_at_grasp
+            called = called or exported.display_name
         order = _order(store, settings, task, format, scene, calibration, object_at_grasp=object_at_grasp)
         order = replace(order, options=options, marks=marks)
         if dry_run:
             found = reports = _examined(store, settings, files, order)
         else:
+            is_new = task not in {each.name for each in store.tasks()}
             found = outcomes = _imported(store, settings, files, order, ", ".join(each.name for each in file))
+            if called and is_new:
+                store.task_changes.rename(task, task, called)
     if json_:
         print_json([*found])
         raise typer.Exit(_status([each.made for each in found], any(each.refusal for each in found)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from teachpath.commands.options import connected
 from teachpath.commands.printing import moment, print_columns, print_json, print_list, verdict_word
-from teachpath.commands.references import find_execution, find_job, find_path, find_plan, find_run
+from teachpath.commands.references import find_execution, find_job, find_path, find_plan, find_run, id_or_words
 from teachpath.commands.scenes import print_bodies
 from teachpath.errors import NotFound
 from teachpath.lengths import describe_length
@@ -68,19 +68,21 @@ def list_or_show(kind: Listing, words: str, url: str, *, task: str = "", limit: 
 
 
 def _task_row(task: Task) -> Sequence[object]:
-    return task.name, task.scene, task.calibration, moment(task.created_ns)
+    return task.name, task.display_name, task.scene, task.calibration, moment(task.created_ns)
 
 
-def _found_task(station: Station, name: str) -> Task:
+def _found_task(station: Station, words: str) -> Task:
     known = station.tasks() + station.tasks(archived=True)
+    name = next((each.name for each in known if each.display_name == words), id_or_words(words))
     if name not in (each.name for each in known):
-        raise NotFound(f"there is no task {name!r}; list them with: teachpath tasks")
+        raise NotFound(f"there is no task {words!r}; list them with: teachpath tasks")
     return station.get_task(name)
 
 
 def _show_task(station: Station, task: Task) -> None:
     name, gone = task.name, f", deleted {moment(task.archived_ns)}" if task.archived_ns else ""
-    print(f"task {name}: scene {task.scene}, calibration {task.calibration}, {moment(task.created_ns)}{gone}")
+    called = f", called {task.display_name}" if task.display_name else ""
+    print(f"task {name}{called}: scene {task.scene}, calibration {task.calibration}, {moment(task.created_ns)}{gone}")
     verdicts = Counter(verdict_word(d.verdict) for d in station.demonstrations(name))
     print(f"demonstrations: {', '.join(f'{n} {verdict}' for verdict, n in verdicts.items()) or 'none'}")
     for run in station.runs(name, limit=1):
@@ -139,18 +141,18 @@ def _execution_row(execution: Execution) -> Sequence[object]:
 
 def _scene_row(scene: Scene) -> Sequence[object]:
     obstacles = ", ".join(obstacle.name for obstacle in scene.obstacles)
-    return scene.name, obstacles or "none", scene.carried.name if scene.carried else ""
+    return scene.name, scene.display_name, obstacles or "none", scene.carried.name if scene.carried else ""
 
 
-def _found_scene(station: Station, name: str) -> Scene:
-    found = [scene for scene in station.scenes() if scene.name == name]
+def _found_scene(station: Station, words: str) -> Scene:
+    found = [scene for scene in station.scenes() if words == scene.display_name or scene.name == id_or_words(words)]
     if not found:
-        raise NotFound(f"there is no scene {name!r}; list them with: teachpath scenes")
+        raise NotFound(f"there is no scene {words!r}; list them with: teachpath scenes")
     return found[0]
 
 
 TASKS: Final = Listing(
-    columns=("task", "scene", "calibration", "made"),
+    columns=("task", "called", "scene", "calibration", "made"),
     row=_task_row,
     listed=lambda station, task, limit: station.tasks(),
     found=_found_task,
@@ -199,7 +201,7 @@ EXECUTIONS: Final = Listing(
     none="no executions yet: teachpath run PLAN",
 )
 SCENES: Final = Listing(
-    columns=("scene", "obstacles", "object"),
+    columns=("scene", "called", "obstacles", "object"),
     row=_scene_row,
     listed=lambda station, task, limit: station.scenes(),
     found=_found_scene,

@@ -1,5 +1,6 @@
 """What people call runs, paths, plans, jobs and executions: by id, by the beginning of one, or by words.
 
+A task is meant by its name, or by the display name from which that was made: `"Küche räumen"` is `kueche-raeumen`.
 `last` is the newest; `TASK/2` is the path of cluster 2 of the task's newest run, and where a plan is wanted the newest
 plan of that path; `TASK` is its newest run, or its only path.
 """
@@ -11,6 +12,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from teachpath.errors import NotFound, UnusableInput
+from teachpath_proto.display_names import id_of
 
 if TYPE_CHECKING:
     from teachpath_client.models import PathSummary, RunSummary
@@ -29,10 +31,15 @@ class _Listed(Protocol):
 Entry = TypeVar("Entry", bound=_Listed)
 
 
+def id_or_words(words: str) -> str:
+    """Return the name of the task or scene that is meant."""
+    return id_of(words) or words
+
+
 def find_run(station: Station, words: str) -> RunSummary:
     """Return the run that is meant; raises NotFound, or UnusableInput where several are."""
     runs = station.runs()
-    newest = next((run for run in runs if run.task == words), None)
+    newest = next((run for run in runs if run.task == id_or_words(words)), None)
     return newest or pick("run", words, runs)
 
 
@@ -42,7 +49,8 @@ def find_path(station: Station, words: str) -> str:
         return words
     paths = station.paths()
     task, slash, cluster = words.partition("/")
-    if slash or any(path.task == words for path in paths):
+    task = id_or_words(task)
+    if slash or any(path.task == task for path in paths):
         return _of_newest_run(paths, task, cluster).id
     if words == LAST and paths:
         return _of_newest_run(paths, paths[0].task, "").id

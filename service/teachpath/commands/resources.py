@@ -19,13 +19,14 @@ from teachpath.commands.listings import (
 )
 from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import print_columns, print_json
+from teachpath.commands.references import id_or_words
 from teachpath.errors import NotFound
 
 if TYPE_CHECKING:
     from teachpath_client.models import Health, Robot
 
 Limit = Annotated[int, typer.Option(min=1, help="Of those listed, newest first.")]
-OfTask = Annotated[str, typer.Option("--task", help="Only those of one task.")]
+OfTask = Annotated[str, typer.Option("--task", help="Only those of one task.", callback=id_or_words)]
 
 
 def status(url: Url = "", json_: Json = False) -> None:
@@ -35,7 +36,8 @@ def status(url: Url = "", json_: Json = False) -> None:
         if json_:
             print_json(health)
             return
-        print(f"teachpath {health.version} at {station.url}, up {health.uptime:.0f} s")
+        called = f"{health.display_name}: " if health.display_name else ""
+        print(f"{called}teachpath {health.version} at {station.url}, up {health.uptime:.0f} s")
     for line in _status_lines(health):
         print(line)
 

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import moment, print_answer, print_columns, print_json, print_list
+from teachpath.commands.references import id_or_words
 from teachpath.errors import UnusableInput
+
+if TYPE_CHECKING:
+    from teachpath_client.models import SceneVersion
+    from teachpath_client.station import Station
 
 app: typer.Typer = typer.Typer(
     help="Scenes of a running station: add, show, versions, copy, remove, restore (docs/scenes.md); "
@@ -20,7 +24,7 @@ app: typer.Typer = typer.Typer(
     no_args_is_help=True,
 )
 
-Name = Annotated[str, typer.Argument(help="Of the scene.")]
+Name = Annotated[str, typer.Argument(help="The scene, by name or as people call it.", callback=id_or_words)]
 Note = Annotated[str, typer.Option(help="Why, for whoever reads the versions.")]
 Number = Annotated[int | None, typer.Option("--version", help="Its number; the newest unless given.")]
 
@@ -38,8 +42,14 @@ def add(
     if name and len(read) > 1:
         raise UnusableInput(f"{file} has {len(read)} scenes; name is for a file with one")
     with connected(url) as station:
-        saved = [station.save_scene(name or scene["name"], _without_name(scene), note=note) for scene in read]
+        saved = [_save(station, name or scene["name"], _without_name(scene), note) for scene in read]
     print_answer(saved, *(f"scene {each.scene}, version {each.number}" for each in saved), json_=json_)
+
+
+def _save(station: Station, name: str, scene: dict[str, Any], note: str) -> SceneVersion:
+    """Save a scene under a name of any letters."""
+    made = id_or_words(name)
+    return station.save_scene(made, ({"display_name": name} if made != name else {}) | scene, note=note)
 
 
 @app.command("show")
@@ -73,7 +83,7 @@ def copy(
 ) -> None:
     """Keep a scene under another name too."""
     with connected(url) as station:
-        made = station.copy_scene(name, to)
+        made = station.copy_scene(name, id_or_words(to), display_name=to if id_or_words(to) != to else "")
     print_answer(made, f"scene {made.scene}", json_=json_)
 
 
@@ -140,6 +150,8 @@ def _read_mesh(shape: dict[str, Any], folder: Path) -> None:
 
 
 def _document(file: Path) -> Any:
+    import tomllib
+
     try:
         text = file.read_text(encoding="utf-8")
         return json.loads(text) if file.suffix.lower() == ".json" else tomllib.loads(text)

@@ -8,6 +8,7 @@ import typer
 
 from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import print_answer
+from teachpath.commands.references import id_or_words
 from teachpath.commands.work import Task
 
 app: typer.Typer = typer.Typer(
@@ -36,11 +37,17 @@ def restore(task: Task, url: Url = "", json_: Json = False) -> None:
 @app.command()
 def rename(
     task: Task,
-    name: Annotated[str, typer.Argument(help="Another name, that no task has, no deleted one either.")],
+    name: Annotated[str, typer.Argument(help="Another name, with spaces and any letters; no task may have it.")],
     url: Url = "",
     json_: Json = False,
 ) -> None:
-    """Give a task another name; demonstrations, runs, paths, plans and jobs go with it."""
+    """Give a task another name; demonstrations, runs, paths, plans and jobs go with it.
+
+    A name with spaces or umlauts is what people read; commands and addresses have the one that is made of it
+    ("Küche räumen": kueche-raeumen).
+    """
+    other = id_or_words(name)
     with connected(url) as station:
-        renamed = station.rename_task(task, name)
-    print_answer(renamed, f"task {task} is called {renamed.name} now", json_=json_)
+        renamed = station.rename_task(task, other, display_name=name if other != name else "")
+    called = f"{renamed.display_name} ({renamed.name})" if renamed.display_name else renamed.name
+    print_answer(renamed, f"task {task} is called {called} now", json_=json_)

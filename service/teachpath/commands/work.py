@@ -11,14 +11,14 @@ import typer
 from teachpath.commands.options import Json, Url, connected
 from teachpath.commands.printing import print_answer, print_json, verdict_word
 from teachpath.commands.progress import job_shown, progress_bar
-from teachpath.commands.references import find_path, find_run
+from teachpath.commands.references import find_path, find_run, id_or_words
 from teachpath.errors import NotFound
 
 if TYPE_CHECKING:
     from teachpath_client.models import BusSettings, Dendrogram, Job
     from teachpath_client.station import Station
 
-Task = Annotated[str, typer.Argument(help="The task.")]
+Task = Annotated[str, typer.Argument(help="The task, by name or as people call it.", callback=id_or_words)]
 AsRecorded = Annotated[bool, typer.Option(help="Also those under a former version of their calibration.")]
 CALIBRATIONS = {False: "present", True: "recorded"}  # by --as-recorded
 
@@ -137,8 +137,10 @@ def plan(
 
 
 def replay(
-    task: Annotated[str, typer.Argument(help="Task whose demonstrations are played.")],
-    into: Annotated[str, typer.Option(help="Task that they are recorded into; made when missing.")] = "",
+    task: Task,
+    into: Annotated[
+        str, typer.Option(help="Task that they are recorded into; made when missing.", callback=id_or_words)
+    ] = "",
     number: Annotated[list[int] | None, typer.Option(help="Only these demonstrations; may be repeated.")] = None,
     speed: Annotated[float, typer.Option(help="1 = original timing.")] = 1.0,
     url: Url = "",

@@ -75,6 +75,7 @@ class Task:
             the scene has it.
         archived_ns: when it was deleted [ns since the Unix epoch]; 0: it was not. All of it is kept, and can be
             brought back.
+        display_name: what people call it; empty: its name.
     """
 
     name: str
@@ -83,6 +84,7 @@ class Task:
     created_ns: int
     object_at_grasp: bool = False
     archived_ns: int = 0
+    display_name: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +103,11 @@ class Trajectory:
 
     def __len__(self) -> int:
         return len(self.times)
+
+    def rounded(self, decimals: int) -> Trajectory:
+        """Return the trajectory with so many digits after the point, for those who draw it."""
+        turned = None if self.orientations is None else self.orientations.round(decimals)
+        return Trajectory(self.times.round(decimals), self.positions.round(decimals), turned)
 
     def thinned(self, most: int) -> Trajectory:
         """Return at most `most` (2 or more) of its samples, evenly picked, the first and the last among them."""

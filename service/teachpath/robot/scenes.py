@@ -10,6 +10,7 @@ from teachpath.errors import Conflict, NotFound
 from teachpath.io.store.scenes import StoredScenes, first_version
 from teachpath.motion.collision.scene_checks import check_scene
 from teachpath.records import SavedScene, Scene, SceneVersion
+from teachpath_proto.display_names import id_of
 
 
 class Scenes:
@@ -81,13 +82,14 @@ class Scenes:
             use: what goes on in the scene of this name now, in words; empty: nothing.
 
         Raises:
-            Conflict: the scene is in use, or as `StoredScenes.save`.
+            Conflict: the scene is in use, another one is called so, or as `StoredScenes.save`.
         """
         if use and self._newest(scene.name):
             raise Conflict(f"scene {scene.name} stays as it is while {use}")
+        self._require_distinct(scene)
         return self._stored.save(scene, self._configured.get(scene.name), base=base, author=author, note=note)
 
-    def copy(self, name: str, copy: str, *, author: str = "") -> SceneVersion:
+    def copy(self, name: str, copy: str, *, display_name: str = "", author: str = "") -> SceneVersion:
         """Keep a scene under another name, which no scene may have.
 
         Raises:
@@ -97,8 +99,9 @@ class Scenes:
         original = self.newest(name)
         if self._newest(copy):
             raise Conflict(f"there is, or was, a scene {copy}; name another copy of {name}")
-        made = replace(original.scene, name=copy)
+        made = replace(original.scene, name=copy, display_name=display_name)
         check_scene(made)
+        self._require_distinct(made)
         note = f"copy of {name}, version {original.version.number}"
         return self._stored.save(made, None, base=0, author=author, note=note)
 
@@ -115,6 +118,16 @@ class Scenes:
             raise Conflict(f"scene {name} is the only one, and a station needs one; make another one first")
         self.newest(name)
         return self._stored.remove(name, self._configured.get(name), author=author)
+
+    def _require_distinct(self, scene: Scene) -> None:
+        """Raise Conflict where another scene has its display name, or one from which the same name would be made."""
+        wanted = id_of(scene.display_name).lower()
+        for other in self.all() if wanted else []:
+            if other.name != scene.name and wanted in (other.name.lower(), id_of(other.display_name).lower()):
+                raise Conflict(
+                    f"{scene.display_name!r} looks like the name of scene {other.name}; choose that scene, or give "
+                    "another name"
+                )
 
     def _newest(self, name: str) -> SavedScene | None:
         saved = self._stored.newest(name)

@@ -16,6 +16,8 @@ class WebSettings:
     host: str = "127.0.0.1"
     # TCP port of the REST API, the page and its WebSocket
     port: Annotated[int, Ge(1), Le(65535)] = 8765
+    # what people call this station, e.g. "Cell 3, south": on its page, and in `teachpath status`
+    display_name: str = ""
     # further names under which this station is reached, e.g. over the network or behind a proxy; none with a *
     hosts: tuple[str, ...] = ()
     # folder of station.pem and station.key, for https; empty: tls/ in the data folder, made by `teachpath tls init`

@@ -13,6 +13,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
+from teachpath.motion.collision.scene_checks import check_scene
+from teachpath.motion.planning.canonical import canonical
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import ObjectPose, Scene, Shape
 from teachpath.robot.scene_preparation import MAX_TRIANGLES, prepared_scene
@@ -191,3 +193,17 @@ def test_a_scene_that_cannot_be_is_a_sentence(shape: Shape, sentence: str) -> No
         prepared_scene(Scene("s", (shape,)), ARM)
     with pytest.raises(UnusableInput, match="two bodies ball in scene s"):
         prepared_scene(Scene("s", (BALL, BALL)), ARM)
+
+
+def test_a_scene_is_called_anything_and_plans_of_it_hold(scenes: Scenes) -> None:
+    called = replace(PAPER, display_name="Halle 3 (Süd)")
+    assert scenes.save(called).number == 2
+    assert scenes.save(called).number == 2
+    assert scenes.get("paper").display_name == "Halle 3 (Süd)"
+    assert canonical(called) == canonical(PAPER)
+    with pytest.raises(Conflict, match="'Halle 3 Süd' looks like the name of scene paper"):
+        scenes.copy("empty", "other", display_name="Halle 3 Süd")
+    scenes.copy("paper", "halle-4", display_name="Halle 4")
+    assert scenes.get("halle-4").display_name == "Halle 4"
+    with pytest.raises(UnusableInput, match=r"scene mixed: .* mixes Latin and Cyrillic letters"):
+        check_scene(replace(PAPER, name="mixed", display_name="H\u0430lle"))

@@ -43,7 +43,7 @@ declare global {
     recordings: ActiveRecording[];
     trackers: { name: string }[];
     guidance: Record<string, string>;
-    station: { notes: string[]; authority: boolean; documents: boolean; name: string } | null;
+    station: { notes: string[]; authority: boolean; documents: boolean; name: string; display_name: string } | null;
     shownStation: string | null;
     executor: ExecutorStatus | null;
     lease: LeaseState | null;

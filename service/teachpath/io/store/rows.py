@@ -11,6 +11,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from teachpath.io.documents import from_document, to_document
+from teachpath.io.store.display_names import require_distinct
 from teachpath.io.store.engine import lock_name
 from teachpath.io.store.imported_files import with_note
 from teachpath.io.store.tables import DemonstrationRow, JobRow, RunTable, TaskRow
@@ -46,10 +47,11 @@ def success(outcome: str, now: int) -> dict[str, Any]:
 
 
 def ensured_task(session: Session, task: Task) -> TaskRow:
-    """Return the row of a task; added when there is none."""
+    """Return the row of a task; added when there is none, and Conflict where another one is called so."""
     lock_name(session, "task", task.name)
     row = session.get(TaskRow, task.name)
     if row is None:
+        require_distinct(session, task.name, task.display_name)
         row = TaskRow(**{**asdict(task), "created_ns": time.time_ns()})
         session.add(row)
     return row
@@ -110,7 +112,7 @@ def imported_rows(
 
 def task_of(row: TaskRow) -> Task:
     """Return the task of a row."""
-    return Task(row.name, row.scene, row.calibration, row.created_ns, row.object_at_grasp, row.archived_ns)
+    return Task(**{name: getattr(row, name) for name in Task.__dataclass_fields__})
 
 
 def job_of(row: JobRow) -> Job:

@@ -87,7 +87,8 @@ class StoredScenes:
             number = newest.version.number if newest else 0
             if base is not None and base != number:
                 raise Conflict(_outdated(scene.name, base, newest))
-            if newest and not newest.version.removed and newest.scene == scene:
+            is_same = newest and newest.scene == scene and newest.scene.display_name == scene.display_name
+            if newest and is_same and not newest.version.removed:
                 return newest.version
             if newest:
                 _keep_places(session, newest.scene, scene)

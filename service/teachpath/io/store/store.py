@@ -67,8 +67,7 @@ class Store:
         self.motions: Motions = Motions(folder / "executions", opener)
         engine = open_engine(database_url(settings))
         self.services: Services = Services(engine, settings.station, folder)
-        self._engine = engine.execution_options(service=self.services.id)
-        self._changed = changed
+        self._engine, self._changed = engine.execution_options(service=self.services.id), changed
         self.arms: Arms = Arms(self._engine)
         self.feed: ChangeFeed = ChangeFeed(engine, self.services.id, changed)
         self.claims: JobClaims = JobClaims(self._engine, self.services, changed)
@@ -109,16 +108,17 @@ class Store:
 
     # tasks and demonstrations
 
-    def ensure_task(self, name: str, *, scene: str, calibration: str, object_at_grasp: bool = False) -> Task:
+    def ensure_task(
+        self, name: str, *, scene: str, calibration: str, object_at_grasp: bool = False, display_name: str = ""
+    ) -> Task:
         """Return the task `name`; made with the other arguments when it does not exist."""
         with self._change() as session:
-            row = ensured_task(session, Task(name, scene, calibration, 0, object_at_grasp))
-        return task_of(row)
+            return task_of(ensured_task(session, Task(name, scene, calibration, 0, object_at_grasp, 0, display_name)))
 
     def tasks(self) -> list[Task]:
         """List the tasks that are not archived, oldest first."""
-        question = select(TaskRow).where(TaskRow.archived_ns == 0).order_by(TaskRow.created_ns)
-        return [task_of(row) for row in self._all(question)]
+        rows = self._all(select(TaskRow).where(TaskRow.archived_ns == 0).order_by(TaskRow.created_ns))
+        return [task_of(row) for row in rows]
 
     def task(self, name: str) -> Task:
         """Return one task, archived or not; raises NotFound."""

@@ -19,7 +19,7 @@ from sqlalchemy import (
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
-NEWEST: Final = "0018"  # of the migrations
+NEWEST: Final = "0019"  # of the migrations
 
 
 class Base(DeclarativeBase):
@@ -47,6 +47,7 @@ class TaskRow(Base):
     created_ns: Mapped[int] = mapped_column(BigInteger)
     object_at_grasp: Mapped[bool] = mapped_column(Boolean)
     archived_ns: Mapped[int] = mapped_column(BigInteger)  # 0: it was not deleted
+    display_name: Mapped[str] = mapped_column(Text)  # empty: the name
 
 
 class DemonstrationRow(Base):

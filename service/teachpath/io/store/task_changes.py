@@ -1,4 +1,4 @@
-"""What may be done with a task as a whole: archive it, bring it back, rename it. Nothing of it is ever removed."""
+"""What is done with a task as a whole: archive it, bring it back, call it otherwise. Nothing of it is ever removed."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import Conflict, NotFound
 from teachpath.io.store.changes import Changed, changing, note
+from teachpath.io.store.display_names import require_distinct
 from teachpath.io.store.engine import lock_name
 from teachpath.io.store.job_claims import UNFINISHED
 from teachpath.io.store.rows import task_of
@@ -45,17 +46,25 @@ class TaskChanges:
             row.archived_ns = 0
         return task_of(row)
 
-    def rename(self, name: str, to: str) -> Task:
+    def rename(self, name: str, to: str, display_name: str | None = None) -> Task:
         """Give a task another name, with all that is of it; its recordings go on saying what they were recorded as.
+
+        Args:
+            name: of the task.
+            to: its name from now on, which may be the same.
+            display_name: what people call it from now on; None: as before.
 
         Raises:
             NotFound: no such task.
-            Conflict: there is a task of the other name, or a job of this one waits or runs.
+            Conflict: there is a task of the other name, or called so, or a job of this one waits or runs.
         """
         with changing(self._engine, self._changed) as session:
             for each in sorted({name, to}):  # in one order, so that nobody waits for each other
                 lock_name(session, "task", each)
             row = _locked(session, name)
+            if display_name is not None:
+                require_distinct(session, name, display_name)
+                row.display_name = display_name
             if name == to:
                 return task_of(row)
             if (taken := session.get(TaskRow, to)) is not None:

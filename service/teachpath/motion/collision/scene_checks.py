@@ -7,6 +7,7 @@ from typing import Final
 
 from teachpath.errors import UnusableInput
 from teachpath.records import Scene, Shape
+from teachpath_proto.display_names import checked_display_name
 from teachpath_proto.keys import is_name, name_refusal
 
 SIZES: Final = {"box": 3, "cylinder": 2, "sphere": 1, "mesh": 1}  # numbers in the size of a shape
@@ -17,6 +18,10 @@ def check_scene(scene: Scene) -> None:
     """Raise UnusableInput where no scene can be so; the sentence names the shape."""
     if not is_name(scene.name):
         raise UnusableInput(name_refusal("scene", scene.name))
+    try:
+        checked_display_name(scene.display_name)
+    except ValueError as error:
+        raise UnusableInput(f"scene {scene.name}: {error}") from None
     known: set[str] = set()
     for shape in scene.bodies:
         what = f"body of scene {scene.name}"
