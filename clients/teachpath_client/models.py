@@ -1485,7 +1485,7 @@ class Scene:
         floor: height of the floor [m, world]; the arm's foot stands at 0.
         keep_in: boxes that arm, gripper and carried object stay inside.
         keep_out: shapes of any kind that they stay out of.
-        display_name: what people call it; empty: its name. Plans hold whatever it is called.
+        display_name: what people call it; empty: its name. Plans hold whatever it is called, and have it empty.
     """
 
     name: str

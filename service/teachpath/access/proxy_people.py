@@ -13,7 +13,7 @@ from teachpath.records import Capability, Subject, capabilities_of
 
 FORWARDED_USER: Final = "X-Forwarded-User"  # header of who somebody is
 EVERYBODY: Final = "*"  # in the settings: whoever comes through the proxy
-HEADER: Final = re.compile(r"[A-Za-z0-9-]{1,64}")
+HEADER: Final = re.compile(r"[a-z0-9-]{1,64}", re.ASCII | re.IGNORECASE)
 MAX_NAME_LENGTH: Final = 64  # characters of a name that a proxy gives
 MAX_SHOWN: Final = 8  # groups of somebody that a sentence names
 MAX_GROUP_LENGTH: Final = 60  # characters of each of them

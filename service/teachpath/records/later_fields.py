@@ -10,9 +10,8 @@ from dataclasses import Field
 from typing import Any, Final
 
 LATER: Final = {"later": True}
-LABEL: Final = {"label": True}  # of a field that only people read: it enters no digest at all
 
 
 def enters_digest(declared: Field[Any], value: object) -> bool:
     """Tell whether a record's field with this value is part of the record's digest."""
-    return "label" not in declared.metadata and ("later" not in declared.metadata or value != declared.default)
+    return "later" not in declared.metadata or value != declared.default

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from teachpath.errors import UnusableInput
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
-from teachpath.records.later_fields import LABEL, LATER
+from teachpath.records.later_fields import LATER
 from teachpath_proto.keys import is_name, name_refusal
 
 MAX_OUTPUT_REST = 60.0  # [s]
@@ -77,7 +77,7 @@ class Scene:
         floor: height of the floor [m, world]; the arm's foot stands at 0.
         keep_in: boxes that arm, gripper and carried object stay inside.
         keep_out: shapes of any kind that they stay out of.
-        display_name: what people call it; empty: its name. Plans hold whatever it is called.
+        display_name: what people call it; empty: its name. Plans hold whatever it is called, and have it empty.
     """
 
     name: str
@@ -86,7 +86,7 @@ class Scene:
     floor: float = 0.0
     keep_in: tuple[Shape, ...] = ()
     keep_out: tuple[Shape, ...] = ()
-    display_name: str = field(default="", compare=False, metadata=LABEL)
+    display_name: str = field(default="", compare=False, metadata=LATER)
 
     @property
     def bodies(self) -> tuple[Shape, ...]:

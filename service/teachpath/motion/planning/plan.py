@@ -66,6 +66,7 @@ def plan(
     """
     settings = settings or MotionSettings()
     arm = arm or Arm.of_settings(settings)
+    scene = replace(scene, display_name="")  # a signed one would bind the plan to it
     ways = (None,) if shown is None else (shown, None)
     made = first_accepted(ways, lambda preferred: _plan_near(preferred, path, scene, settings, arm))
     posture = None if shown is None else distance_from_shown(made.lengths, made.joints, shown, arm.limits.names)

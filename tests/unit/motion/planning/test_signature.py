@@ -14,12 +14,15 @@ from teachpath.errors import PathRefused, TeachpathError, UnusableInput
 from teachpath.io.documents import decode, encode
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import VARIANTS
+from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.motion.planning.canonical import canonical
 from teachpath.motion.planning.digest import digest
+from teachpath.motion.planning.plan import plan as make_plan
 from teachpath.motion.planning.signature import DAY_NS, CalibrationScope, SigningKey, sign_plan, verify_signature
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Calibration, Plan
 from tests.unit.executor.executors import ARM, EPOCH, KEY
+from tests.unit.motion.ways import MIDDLE, way
 
 SETTINGS = MotionSettings()
 Place = tuple[str | int, ...]
@@ -93,6 +96,11 @@ def test_every_single_change_of_a_signed_plan_is_refused(plan: Plan) -> None:
     assert {place[0] for place, _ in places} == set(json.loads(text))  # no field is left out
     accepted = [place for place, value in places if not is_refused(with_value(text, place, changed(value)))]
     assert accepted == []
+
+
+def test_whatever_people_call_its_scene_a_plan_is_the_same() -> None:
+    one, other = (replace(paper_scene(), display_name=name) for name in ("", "Halle 3 (Süd)"))
+    assert encode(make_plan(way(MIDDLE), one)) == encode(make_plan(way(MIDDLE), other))
 
 
 @given(st.data())
