@@ -185,7 +185,8 @@ class Execution:
         """Hold for good, because the certificate of the plan holds no longer."""
         self.revocation = f"the certificate of {self.plan} was revoked: {reason}; stop, and plan the path again"
         self.program.hold()
-        self.reason = self.reason if self._final_state else self.revocation
+        if not self._final_state:
+            self.reason = self.revocation
 
     def start_detour(self, detour: Detour, start_q: Array) -> None:
         """Begin a step or a way back, unless the execution is being ended, or the nominal motion is not at rest.
