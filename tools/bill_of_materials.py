@@ -24,8 +24,8 @@ from packageurl import PackageURL
 
 ROOT: Final = Path(__file__).parents[1]
 PROJECT: Final = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-PINNED: Final = ROOT / "requirements" / "service.txt"
-VENDORED: Final = ROOT / "clients" / "web" / "vendor"
+PINS_FILE: Final = ROOT / "requirements" / "service.txt"
+VENDOR_FOLDER: Final = ROOT / "clients" / "web" / "vendor"
 PIN: Final = re.compile(
     r"^([a-z0-9-]+)==([^ ]+)(?: ; ([^\\\n]+?))?((?: \\\n? +--hash=sha256:[0-9a-f]{64})+)", re.MULTILINE
 )
@@ -51,7 +51,7 @@ def text() -> str:
 
 
 def _packages() -> Iterator[Component]:
-    for name, version, marker, hashes in PIN.findall(PINNED.read_text()):
+    for name, version, marker, hashes in PIN.findall(PINS_FILE.read_text()):
         part = _component(name, version, PackageURL("pypi", None, name, version), _license_of(name))
         part.hashes.update(HashType(alg=HashAlgorithm.SHA_256, content=h) for h in re.findall(r"[0-9a-f]{64}", hashes))
         if marker:
@@ -60,18 +60,18 @@ def _packages() -> Iterator[Component]:
 
 
 def _browser_libraries() -> Iterator[Component]:
-    for folder, name, version, licence in ROW.findall((VENDORED / "README.md").read_text()):
+    for folder, name, version, licence in ROW.findall((VENDOR_FOLDER / "README.md").read_text()):
         part = _component(name, version, PackageURL("npm", None, name, version), licence)
-        part.components.update(_file(file) for file in sorted((VENDORED / folder).glob("*")))
+        part.components.update(_file(file) for file in sorted((VENDOR_FOLDER / folder).glob("*")))
         yield part
 
 
 def _file(file: Path) -> Component:
     content = hashlib.sha256(file.read_bytes()).hexdigest()
     return Component(
-        name=str(file.relative_to(VENDORED)),
+        name=str(file.relative_to(VENDOR_FOLDER)),
         type=ComponentType.FILE,
-        bom_ref=f"file:{file.relative_to(VENDORED)}",
+        bom_ref=f"file:{file.relative_to(VENDOR_FOLDER)}",
         hashes=[HashType(alg=HashAlgorithm.SHA_256, content=content)],
     )
 

@@ -13,7 +13,7 @@ import sys
 from teachpath_client import ClientError, Station
 from teachpath_client.events import Event
 
-ENDED = ("succeeded", "failed", "cancelled")
+FINAL_STATES = ("succeeded", "failed", "cancelled")
 
 
 def line(station: Station, event: Event) -> str:
@@ -38,7 +38,7 @@ def main() -> None:
         with Station(options.url) as station, station.events() as events:
             for event in events:
                 print(line(station, event), flush=True)
-                if options.until_job and event.topic == "jobs" and (event.status or {}).get("state") in ENDED:
+                if options.until_job and event.topic == "jobs" and (event.status or {}).get("state") in FINAL_STATES:
                     return
     except KeyboardInterrupt:
         return

@@ -20,7 +20,7 @@ from teachpath_client.live import HapticFeedback, calibrate_glove, ended_by_sign
 from teachpath_client.pedal import pedal_or_none
 from teachpath_client.reading import HandReading, Vector
 from teachpath_client.replay import read_mcap
-from teachpath_client.ros2.commands import ABOUT as ABOUT_ROS2
+from teachpath_client.ros2.commands import COMMAND_HELP as ABOUT_ROS2
 from teachpath_client.ros2.commands import add_ros2
 from teachpath_client.station import Station
 from teachpath_client.status import Status
@@ -32,7 +32,7 @@ from teachpath_proto.logins import Role
 from teachpath_proto.reports import report_document
 
 ReadingFilter = Callable[[Iterator[HandReading]], Iterator[HandReading]]
-ABOUT = {
+COMMAND_HELP = {
     "tracker": "Publish from a device until Ctrl-C; the station cuts what comes into demonstrations. For example: "
     "teachpath-client tracker --source hand --option fastrak.port=/dev/ttyUSB0 --option glove.port=/dev/ttyUSB1 "
     "--option glove.calibration=glove.toml --task stack --scene paper",
@@ -108,7 +108,7 @@ def parser_of_commands() -> argparse.ArgumentParser:
         command.add_argument("--login", metavar="FILE", default="", help="as `teachpath login create` wrote it")
         command.add_argument("--speed", type=_speed, default=1.0, help="1 = real time (default)")
     for name, command in commands.choices.items():
-        command.description = ABOUT[name]
+        command.description = COMMAND_HELP[name]
     return parser
 
 

@@ -22,9 +22,9 @@ from teachpath_client.reading import HandReading
 from teachpath_client.terminal import Terminal, open_terminal
 
 PEDAL_BIT = 2  # of HandSample.buttons
-HELD = 0.15  # [s] that a key of the terminal counts as held: some samples must carry it
+KEY_HOLD_TIME = 0.15  # [s] that a key of the terminal counts as held: some samples must carry it
 EVENT = struct.Struct("llHHi")  # struct input_event of linux/input.h: time, type, code, value
-KEY_EVENT, RELEASED, PRESSED = 0x01, 0, 1  # EV_KEY; value 2 repeats a key that is held
+KEY_EVENT, KEY_RELEASED, KEY_PRESSED = 0x01, 0, 1  # EV_KEY; value 2 repeats a key that is held
 EVIOCGRAB = 0x40044590  # nobody else gets the keys, so that the pedal does not type into the terminal
 NAMES = {"space": b" ", "enter": b"\n", "tab": b"\t"}  # of keys that a letter cannot name
 KEYS = f"{', '.join(NAMES)}, a letter"
@@ -115,7 +115,7 @@ class TerminalPedal(_Pressed):
 
     def _take(self, content: bytes) -> None:
         if self._key in content.replace(b"\r", b"\n"):
-            self._until = self._clock() + HELD
+            self._until = self._clock() + KEY_HOLD_TIME
 
 
 class EventPedal(_Pressed):
@@ -170,9 +170,9 @@ class EventPedal(_Pressed):
         self._rest += content
         whole = len(self._rest) - len(self._rest) % EVENT.size
         for _, _, kind, code, value in EVENT.iter_unpack(self._rest[:whole]):
-            if kind == KEY_EVENT and value == PRESSED:
+            if kind == KEY_EVENT and value == KEY_PRESSED:
                 self._down.add(code)
-            elif kind == KEY_EVENT and value == RELEASED:
+            elif kind == KEY_EVENT and value == KEY_RELEASED:
                 self._down.discard(code)
         self._rest = self._rest[whole:]
 

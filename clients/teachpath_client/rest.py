@@ -16,9 +16,9 @@ from teachpath_proto.tokens import checked_token, find_token
 
 T = TypeVar("T")
 
-LOCAL = "http://127.0.0.1:8765"
+LOCAL_ADDRESS = "http://127.0.0.1:8765"
 LEASE_HEADER = "Teachpath-Lease"
-UNTRUSTED = "CERTIFICATE_VERIFY_FAILED"  # in the text of an error of TLS
+UNTRUSTED_ERROR = "CERTIFICATE_VERIFY_FAILED"  # in the text of an error of TLS
 PAGE_SIZE = 500  # entries of a list that are asked for at a time, as many as a station gives
 IDLE_TIMEOUT = 2.0  # [s] after which no connection is used again; a service closes those that are idle for 5 s
 STOP_TIMEOUT = 5.0  # [s] for the answer to a stop; a station that lives says within 2 s that nothing was confirmed
@@ -40,7 +40,7 @@ class Rest:
     """
 
     def __init__(
-        self, url: str = LOCAL, *, timeout: float = 60.0, operator: str = "", lease: str = "", token: str = ""
+        self, url: str = LOCAL_ADDRESS, *, timeout: float = 60.0, operator: str = "", lease: str = "", token: str = ""
     ) -> None:
         self.url: str = url.rstrip("/")
         self._operator = operator
@@ -132,7 +132,7 @@ class Rest:
         try:
             answer = self._send("POST", resource, None, None, {}, timeout=STOP_TIMEOUT)
         except Unreachable as error:
-            if UNTRUSTED in str(error):
+            if UNTRUSTED_ERROR in str(error):
                 self._stop_whoever_answers(resource)
             raise NotStopped(f"NOT STOPPED: {error}; press the emergency stop of the arm") from None
         except Refused as refused:
@@ -185,7 +185,7 @@ def _token(url: str, given: str) -> str:
 
 
 def _unreachable(url: str, error: Exception) -> str:
-    if UNTRUSTED in str(error):
+    if UNTRUSTED_ERROR in str(error):
         return (
             f"the certificate of {url} is not trusted here ({error}); put the authority.pem of the station, which its "
             f"page offers at /authority, into {authorities_folder()}"

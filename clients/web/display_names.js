@@ -6,7 +6,7 @@ export const MAX_LENGTH = 80; // characters
 const MAX_ID_LENGTH = 64;
 
 /** @type {Record<string, string>} */
-const SPELLED = {
+const SPELLINGS = {
   ä: "ae",
   ö: "oe",
   ü: "ue",
@@ -29,7 +29,7 @@ const SPELLED = {
 export function idOf(text) {
   const composed = text.trim().normalize("NFC");
   if (isName(composed)) return composed;
-  const spelled = [...composed.toLowerCase()].map((letter) => SPELLED[letter] ?? letter).join("");
+  const spelled = [...composed.toLowerCase()].map((letter) => SPELLINGS[letter] ?? letter).join("");
   const plain = [...spelled.normalize("NFKD").replace(/\p{M}/gu, "")].map(piece).join("");
   return trimmed(trimmed(plain.replace(/-+/g, "-").replace(/\.{2,}/g, ".")).slice(0, MAX_ID_LENGTH));
 }

@@ -9,7 +9,8 @@ const MAX_ENTRIES = 100;
 
 /** @type {Record<string, string>} */
 const JOB_OUTCOMES = { succeeded: "succeeded", failed: "failed", cancelled: "was cancelled" };
-const NOTHING = "Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here.";
+const EMPTY_LOG_SENTENCE =
+  "Nothing since this page was opened. Recordings, learning, plans and what the arm does are noted here.";
 
 /**
  * @param {HTMLElement} place a popover that `button` opens
@@ -25,7 +26,7 @@ export function eventLog(place, button, store) {
   let entries = [];
   const connectionChanges = connectionWatcher();
   const render = () => {
-    patchChildren(list, entries.length ? entries.map(entryRow) : element("li", {}, hint(NOTHING)));
+    patchChildren(list, entries.length ? entries.map(entryRow) : element("li", {}, hint(EMPTY_LOG_SENTENCE)));
     patchChildren(button, unseen ? `Events (${unseen})` : "Events");
   };
   store.subscribe((state) => {

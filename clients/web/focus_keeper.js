@@ -3,7 +3,7 @@
 // would give it to the page as a whole, from where one begins anew.
 
 const FOCUSABLE = "a[href], button, input:not([type=hidden]), select, textarea, summary, [tabindex='0']";
-const PARTS = "section, dialog, [popover], header, [role=tabpanel]"; // that the focus does not leave by itself
+const REGIONS = "section, dialog, [popover], header, [role=tabpanel]"; // that the focus does not leave by itself
 
 /** Keep the focus from now on. */
 export function keepFocus() {
@@ -72,7 +72,7 @@ function neighbour(gone, around) {
   if (gone.closest("[role=tabpanel][hidden]")) return /** @type {HTMLElement | null} */ (tab);
   const kept = around.find(isShown) ?? document.body;
   const from = gone.isConnected ? gone : kept;
-  const part = kept.closest(PARTS) ?? kept;
+  const part = kept.closest(REGIONS) ?? kept;
   const candidates = [.../** @type {NodeListOf<HTMLElement>} */ (part.querySelectorAll(FOCUSABLE))].filter(
     (one) => mayHaveFocus(one) && one.tabIndex >= 0 && one.checkVisibility(),
   );

@@ -117,7 +117,7 @@ export class IdentityControl {
     this.who.replaceChildren(identity.name, ...(isProxied ? [] : [element("button", { type: "button" }, "Sign out")]));
     if (isProxied) this.who.title = groupsSentence(identity);
     this.heading.textContent = isProxied ? "No role here" : "Sign in";
-    this.hint.textContent = isProxied ? noRoleSentence(identity) : ASKS;
+    this.hint.textContent = isProxied ? noRoleSentence(identity) : SIGN_IN_SENTENCE;
     for (const field of this.fields) field.hidden = !hasPasswords;
     for (const input of [this.name, this.password]) input.disabled = !hasPasswords;
     this.button.hidden = isProxied;
@@ -156,7 +156,7 @@ function takeProviderAnswer() {
   };
 }
 
-const ASKS = "This station asks who uses it. The arm is stopped by everybody, signed in or not.";
+const SIGN_IN_SENTENCE = "This station asks who uses it. The arm is stopped by everybody, signed in or not.";
 
 /** @param {Identity} identity */
 function groupsSentence({ groups }) {

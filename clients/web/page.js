@@ -43,7 +43,13 @@ import { connectViewControls } from "./view_controls.js";
 import { feedView } from "./view_feed.js";
 
 /** What the tabs are for, as capabilities. @type {Record<string, Identity["capabilities"]>} */
-const NEEDED = { demonstrate: ["demonstrate"], ways: ["teach"], edit: ["teach"], run: ["operate"], scene: ["teach"] };
+const NEEDED_CAPABILITIES = {
+  demonstrate: ["demonstrate"],
+  ways: ["teach"],
+  edit: ["teach"],
+  run: ["operate"],
+  scene: ["teach"],
+};
 const TAB_KEY = "tab"; // chosen in this browser tab, through a reload
 const STOP_TIMEOUT = 3000; // [ms] of one try: the service says within 2 s that it has no confirmation
 
@@ -65,7 +71,7 @@ function byId(id) {
 /** @param {Identity} identity */
 function showMissing(identity) {
   for (const [panel, place] of missing) {
-    place.textContent = missingSentence(identity, NEEDED[panel.id] ?? []);
+    place.textContent = missingSentence(identity, NEEDED_CAPABILITIES[panel.id] ?? []);
     place.hidden = !place.textContent;
   }
 }

@@ -2,7 +2,7 @@
 import { option } from "./elements.js";
 import { changesAny } from "./store.js";
 
-const ALL = ""; // the choice of all stations
+const ALL_STATIONS = ""; // the choice of all stations
 
 /**
  * The names of the stations that are known of: this one first, then those that something listed is of, by name.
@@ -23,8 +23,8 @@ export function stationNames({ station, demonstrations, jobs, executions }) {
  */
 export function shownStation(state) {
   const names = stationNames(state);
-  const wanted = state.shownStation ?? state.station?.name ?? ALL;
-  return names.length > 1 && names.includes(wanted) ? wanted : ALL;
+  const wanted = state.shownStation ?? state.station?.name ?? ALL_STATIONS;
+  return names.length > 1 && names.includes(wanted) ? wanted : ALL_STATIONS;
 }
 
 /**
@@ -45,7 +45,7 @@ export function ofShownStation(state, list) {
  * @returns {(entry: {station?: string}) => string}
  */
 export function stationLabels(state) {
-  const areSeveral = stationNames(state).length > 1 && shownStation(state) === ALL;
+  const areSeveral = stationNames(state).length > 1 && shownStation(state) === ALL_STATIONS;
   return ({ station }) => (areSeveral && station) || "";
 }
 
@@ -79,7 +79,7 @@ export function stationMenu(store, select) {
     if (!watch.hasChanged(state, changed)) return;
     const names = stationNames(state);
     if (select.parentElement) select.parentElement.hidden = names.length < 2;
-    select.replaceChildren(...names.map((name) => option(name)), option(ALL, "all stations"));
+    select.replaceChildren(...names.map((name) => option(name)), option(ALL_STATIONS, "all stations"));
     select.value = shownStation(state);
   });
 }

@@ -17,7 +17,7 @@
 // Lists are null until they have been read, and stay as they were while the service is away.
 // Until the service has said who uses the page.
 /** @type {Identity} */
-const ANYBODY = {
+const UNAUTHENTICATED_IDENTITY = {
   mode: "none",
   name: "",
   capabilities: ["view", "demonstrate", "teach", "operate", "administer"],
@@ -41,7 +41,7 @@ export const INITIAL_STATE = Object.freeze({
   shownStation: null,
   executor: null,
   lease: null,
-  identity: ANYBODY,
+  identity: UNAUTHENTICATED_IDENTITY,
   selectedRun: null,
   run: "",
   path: "",

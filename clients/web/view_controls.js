@@ -18,7 +18,7 @@ const TURNS = {
 /** @type {Record<string, number>} */
 const ZOOMS = { "+": ZOOM, "=": ZOOM, "-": 1 / ZOOM };
 /** @type {Record<string, string>} */
-const LOOKS = { 0: "home", 1: "front", 2: "side", 3: "top", f: "way" };
+const KEY_VIEWPOINTS = { 0: "home", 1: "front", 2: "side", 3: "top", f: "way" };
 
 /** @param {import("./view.js").View} view @param {import("./store.js").Store} store */
 export function connectViewControls(view, store) {
@@ -44,7 +44,7 @@ export function connectViewControls(view, store) {
     const { key, altKey, ctrlKey, metaKey } = event;
     if (event.defaultPrevented || altKey || ctrlKey || metaKey) return;
     const turn = view.overlay.areKeysTaken ? undefined : TURNS[key];
-    const from = LOOKS[key.toLowerCase()];
+    const from = KEY_VIEWPOINTS[key.toLowerCase()];
     if (turn) view.move(turn);
     else if (ZOOMS[key]) view.move({ nearer: ZOOMS[key] });
     else if (from === "home") view.resetCamera();

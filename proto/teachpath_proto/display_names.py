@@ -9,7 +9,7 @@ from teachpath_proto.keys import is_name
 MAX_LENGTH: Final = 80  # characters
 MAX_ID_LENGTH: Final = 64
 # Letters that fall apart into no letter and marks, and those whose marks German and Danish write as letters.
-SPELLED: Final = {
+SPELLINGS: Final = {
     "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "æ": "ae", "œ": "oe", "ø": "oe", "å": "aa", "ł": "l", "đ": "d",
     "ð": "d", "þ": "th", "ı": "i",
 }  # fmt: skip
@@ -26,7 +26,7 @@ def id_of(text: str) -> str:
     text = unicodedata.normalize("NFC", text.strip())
     if is_name(text):
         return text
-    spelled = "".join(SPELLED.get(letter, letter) for letter in text.lower())
+    spelled = "".join(SPELLINGS.get(letter, letter) for letter in text.lower())
     plain = (c for c in unicodedata.normalize("NFKD", spelled) if not unicodedata.category(c).startswith("M"))
     joined = re.sub(r"\.{2,}", ".", re.sub(r"-+", "-", "".join(map(_piece, plain))))
     return joined.strip("-._")[:MAX_ID_LENGTH].strip("-._")

@@ -15,7 +15,7 @@ from teachpath_proto.logins import Login
 # gets no turn for long stays open: an executor without one took it for the end of the arm's driver. Whoever ends or
 # dies is gone at once all the same, and silence is noticed by those who listen. Setpoints are dropped where a line is
 # full: they find room for more than a second of them, 16 times 64 KiB.
-ALONE: Mapping[str, object] = {
+DISCOVERY_OFF: Mapping[str, object] = {
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
     "transport/shared_memory/enabled": False,
@@ -43,7 +43,7 @@ def listening(endpoints: Sequence[str], mode: str = "peer") -> dict[str, object]
 
     A peer does not route between other peers, but it does between its clients; a router does between all.
     """
-    return {**ALONE, "mode": mode, "listen/endpoints": list(endpoints)}
+    return {**DISCOVERY_OFF, "mode": mode, "listen/endpoints": list(endpoints)}
 
 
 def joining(endpoint: str, login: Login | None, *, timeout: float) -> dict[str, object]:
@@ -55,7 +55,7 @@ def joining(endpoint: str, login: Login | None, *, timeout: float) -> dict[str, 
         timeout: [s] to connect in.
     """
     values: dict[str, object] = {
-        **ALONE,
+        **DISCOVERY_OFF,
         "mode": "client",
         "connect/endpoints": [endpoint],
         "connect/timeout_ms": int(timeout * 1000),

@@ -28,7 +28,7 @@ from teachpath.io.audit_log import AuditLog
 from teachpath.io.bus import Bus, listen_on_bus
 from teachpath.io.bus_logins import prepare_access
 from teachpath.io.signing_key import prepare_signing_key
-from teachpath.io.store.changes import EVERYTHING
+from teachpath.io.store.changes import ALL_TOPICS
 from teachpath.io.store.store import Store
 from teachpath.io.wire import recording_document
 from teachpath.job_kinds import JobKinds
@@ -300,5 +300,5 @@ class Station:
     def _on_change(self, table: str, key: str) -> None:
         """Publish a row that has changed, here or by another station; of a scene, show the object anew."""
         self.event_hub.publish_change(table, key, status_of(self.store, table, key))
-        if table in ("scenes", EVERYTHING):
+        if table in ("scenes", ALL_TOPICS):
             self._shown.show_scene()

@@ -44,7 +44,7 @@ from teachpath_proto.keys import is_name, name_refusal
 
 PREFIX = "TEACHPATH_"
 # former settings -> the one that does their work; empty: none does
-REPLACED = {
+REPLACED_SETTINGS = {
     **dict.fromkeys(("learning.guard", "learning.min_silhouette"), "learning.min_separation"),
     "learning.inconsistent": "learning.outlier_limit",
     **dict.fromkeys(("motion.grasp_tolerance", "simulator.reach"), "motion.grasp_depth"),
@@ -240,7 +240,7 @@ def _refuse_unknown(document: Any, kind: Any, place: str) -> None:
     if not isinstance(document, dict) or not known:
         return
     for key, value in document.items():
-        if (now := REPLACED.get(f"{place}{key}")) is not None:
+        if (now := REPLACED_SETTINGS.get(f"{place}{key}")) is not None:
             fate = f"was replaced by {now}" if now else "is gone, and none takes its place; leave it out"
             raise UnusableSettings(f"setting {place}{key} {fate}; see deploy/teachpath.toml")
         if key not in known:

@@ -16,7 +16,7 @@ from teachpath.jobs.executors import Work
 from teachpath.jobs.jobs import JobKind
 from teachpath.learning.settings import LearningSettings
 from teachpath.motion.planning.signature import CalibrationScope, SigningKey
-from teachpath.offline.import_job import PREPARED, ImportOrder, ImportRequest, PreparedImport, prepare_imports
+from teachpath.offline.import_job import PREPARED_FOLDER, ImportOrder, ImportRequest, PreparedImport, prepare_imports
 from teachpath.offline.import_target import import_calibration, import_scene, starts_at_object
 from teachpath.offline.learning_job import (
     StoredDemonstrations,
@@ -186,7 +186,7 @@ class JobKinds:
         calibration = prepared[0].made[0].calibration.name
         task = Task(job.task, self._scene_of(job.task, given).name, calibration, 0, given.object_at_grasp)
         batch = [
-            (each.made, self.transfers.folder(file.upload) / PREPARED / RECORDINGS)
+            (each.made, self.transfers.folder(file.upload) / PREPARED_FOLDER / RECORDINGS)
             for each, file in zip(prepared, given.files, strict=True)
         ]
         outcome = self.store.finish_import(job.id, task, batch)

@@ -20,7 +20,7 @@ from typing import Annotated, Any, Final, Literal
 from annotated_types import Ge
 
 SERVICE: Final = "service"
-_CHATTY: Final = ("alembic", "httpx")  # libraries whose routine is no news
+_VERBOSE_LOGGERS: Final = ("alembic", "httpx")  # libraries whose routine is no news
 
 _request: ContextVar[str] = ContextVar("request", default="")
 
@@ -89,7 +89,7 @@ def _install(handlers: Sequence[logging.Handler], formatter: logging.Formatter, 
         handler.addFilter(_Context(part))
         handler.setFormatter(formatter)
         root.addHandler(handler)
-    for chatty in _CHATTY:
+    for chatty in _VERBOSE_LOGGERS:
         logging.getLogger(chatty).setLevel(logging.WARNING)
 
 

@@ -94,7 +94,11 @@ def _possible(track: TimedTrajectory, dt: float, wish: float, state: np.ndarray,
     for slope in SLOPES:
         for jerk in JERKS:
             drawn = kernels.shortest_ramp(ramp, state, wish, max(slope, abs(state[2])), jerk) >= 0.0
-            if drawn and ramp_checks.check_ramp(track.table, track.step, ramp, sent, limits, dt)[0] == ramp_checks.KEPT:
+            if (
+                drawn
+                and ramp_checks.check_ramp(track.table, track.step, ramp, sent, limits, dt)[0]
+                == ramp_checks.LIMITS_KEPT
+            ):
                 return True
     return False
 

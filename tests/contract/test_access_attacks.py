@@ -13,7 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
-from teachpath.access.access import STRANGER
+from teachpath.access.access import REFUSED_SUBJECT
 from teachpath.access.loopback import require_safe_binding
 from teachpath.access.tokens import digest_of
 from teachpath.api.access import signed
@@ -213,8 +213,8 @@ def test_control_and_the_journal_have_the_name_of_the_token(guarded: Guarded) ->
 
 
 def test_whoever_stops_the_arm_without_a_token_takes_nobodys_name() -> None:
-    assert signed(STRANGER, "operate") == "not signed in (operate)"
-    assert not is_name(STRANGER.name)  # so that no token has it
+    assert signed(REFUSED_SUBJECT, "operate") == "not signed in (operate)"
+    assert not is_name(REFUSED_SUBJECT.name)  # so that no token has it
 
 
 # other origins and names of the station

@@ -38,11 +38,11 @@ def test_it_has_every_pinned_package_with_all_its_hashes(bill: dict[str, Any]) -
 
 def test_it_has_every_vendored_browser_library_file_by_file(bill: dict[str, Any]) -> None:
     libraries = [part for part in bill["components"] if part["purl"].startswith("pkg:npm/")]
-    folders = {folder.name for folder in bill_of_materials.VENDORED.iterdir() if folder.is_dir()}
+    folders = {folder.name for folder in bill_of_materials.VENDOR_FOLDER.iterdir() if folder.is_dir()}
     files = {file["name"]: file["hashes"][0]["content"] for part in libraries for file in part["components"]}
     assert {name.partition("/")[0] for name in files} == folders
     for folder in folders:
-        for file in (bill_of_materials.VENDORED / folder).iterdir():
+        for file in (bill_of_materials.VENDOR_FOLDER / folder).iterdir():
             assert files[f"{folder}/{file.name}"] == hashlib.sha256(file.read_bytes()).hexdigest()
     assert all(part["licenses"] for part in libraries)
 

@@ -208,9 +208,9 @@ def test_a_certificate_that_was_removed_by_hand_or_without_a_ledger_is_followed_
 
     assert login(bus, "executor").common_name == "executor"
     assert [issued_again().generation, issued_again().generation] == [2, 3]
-    (folder / certificates.ISSUED).unlink()
+    (folder / certificates.ISSUED_FILE).unlink()
     assert issued_again().common_name != "executor"
-    (folder / certificates.ISSUED).write_text("[1")
+    (folder / certificates.ISSUED_FILE).write_text("[1")
     (folder / "executor.pem").unlink()
     with pytest.raises(UnusableSettings, match=r"issued.json does not say .* remove it"):
         said(tmp_path, "station", "certificates")

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from teachpath import __version__
 from teachpath.__main__ import EXIT_STATUS, app
-from teachpath.commands.options import LOCAL, address, stop_addresses
+from teachpath.commands.options import LOCAL_ADDRESS, address, stop_addresses
 from teachpath.errors import NotFound, UnusableInput
 from teachpath.io.running_services import announced
 from teachpath_client import Station
@@ -136,7 +136,7 @@ def test_a_beginning_of_several_ids_is_refused_with_them(url: str) -> None:
 def test_the_service_is_found_by_settings_and_by_what_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     monkeypatch.chdir(tmp_path)
-    assert address() == LOCAL
+    assert address() == LOCAL_ADDRESS
     with announced("http://127.0.0.1:9001"):
         assert address() == "http://127.0.0.1:9001"
         monkeypatch.setenv("TEACHPATH_WEB__PORT", "9002")
@@ -145,25 +145,26 @@ def test_the_service_is_found_by_settings_and_by_what_runs(tmp_path: Path, monke
         (tmp_path / "teachpath.toml").write_text("[web]\nport = 9003\n")
         assert address() == "http://127.0.0.1:9003"
         (tmp_path / "teachpath.toml").unlink()
-    assert address() == LOCAL
+    assert address() == LOCAL_ADDRESS
 
 
 def test_of_several_services_none_is_guessed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     monkeypatch.chdir(tmp_path)
     other = (
-        f"from teachpath.io.running_services import announced\nwith announced('{LOCAL}'): print(flush=True); input()"
+        "from teachpath.io.running_services import announced\n"
+        f"with announced('{LOCAL_ADDRESS}'): print(flush=True); input()"
     )
     with subprocess.Popen([sys.executable, "-c", other], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         process.stdout.readline()
-        assert address() == LOCAL
+        assert address() == LOCAL_ADDRESS
         with announced("http://127.0.0.1:9001"):
             with pytest.raises(UnusableInput, match="several services run"):
                 address()
-            assert stop_addresses() == [LOCAL, "http://127.0.0.1:9001"]
+            assert stop_addresses() == [LOCAL_ADDRESS, "http://127.0.0.1:9001"]
         process.kill()
-    assert address() == LOCAL
+    assert address() == LOCAL_ADDRESS
 
 
 def test_settings_that_cannot_be_read_keep_no_stop_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

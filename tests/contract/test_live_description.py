@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 from teachpath.api import live_messages
 from teachpath.api.live_description import live_description
 from teachpath.io.store.tables import Base
-from teachpath.live.event_hub import PRIVATE, EventHub
+from teachpath.live.event_hub import PRIVATE_TOPICS, EventHub
 from teachpath.live.state_poller import StatePoller
 from teachpath_proto import tracker_pb2
 from tests.contract.desk import Desk, csv
@@ -46,7 +46,7 @@ def test_every_reference_leads_somewhere() -> None:
 
 
 def test_every_row_that_changes_has_its_topic() -> None:
-    assert set(get_args(live_messages.Resource)) == set(Base.metadata.tables) - {"alembic_version"} - PRIVATE
+    assert set(get_args(live_messages.Resource)) == set(Base.metadata.tables) - {"alembic_version"} - PRIVATE_TOPICS
     assert not set(get_args(live_messages.Resource)) & set(live_messages.STATES)
 
 

@@ -13,7 +13,7 @@ import pytest
 import sqlalchemy as sa
 
 from teachpath.errors import Conflict, UnusableInput, UnusableSettings
-from teachpath.io.store.changes import EVERYTHING
+from teachpath.io.store.changes import ALL_TOPICS
 from teachpath.io.store.pages import PageRequest
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
@@ -238,7 +238,7 @@ def test_after_a_lost_line_everything_is_read_again(open_: Open, postgres: Serve
     store, other = open_(), open_()
     with hearing(store, other) as heard:
         postgres.cut_lines()
-        assert next_but_probes(heard) == (EVERYTHING, "")
+        assert next_but_probes(heard) == (ALL_TOPICS, "")
         other.add_job(a_job())
         assert next_but_probes(heard) == ("jobs", "learn-1")
 

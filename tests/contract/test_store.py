@@ -24,7 +24,7 @@ from teachpath.io.arm_models.examples import EXAMPLES
 from teachpath.io.documents import decode_demonstration, encode
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
-from teachpath.io.store.tables import NEWEST, Base, DemonstrationRow, ExecutionTable, JobRow, PlanRow, RunTable
+from teachpath.io.store.tables import NEWEST_REVISION, Base, DemonstrationRow, ExecutionTable, JobRow, PlanRow, RunTable
 from teachpath.records import (
     AccessToken,
     Calibration,
@@ -206,7 +206,7 @@ def test_the_migrations_make_the_tables(store: Store, url: str) -> None:
     with engine.connect() as connection:
         context = MigrationContext.configure(connection, opts={"compare_type": True, "compare_server_default": True})
         assert compare_metadata(context, Base.metadata) == []
-        assert context.get_current_revision() == NEWEST  # so that the next start has nothing to migrate
+        assert context.get_current_revision() == NEWEST_REVISION  # so that the next start has nothing to migrate
     engine.dispose()
 
 

@@ -8,8 +8,8 @@ import {
   namesIn,
   newMesh,
   newShape,
-  PARTS,
   SceneDraft,
+  SHAPE_ROLES,
   sceneBody,
   shapeAt,
   shapesOf,
@@ -38,7 +38,7 @@ const SCENE = {
 const VERSION = { scene: "cell", number: 3 };
 
 test("what is new lies on the table, has a name of its own, and is there alone", () => {
-  for (const part of PARTS) {
+  for (const part of SHAPE_ROLES) {
     const kind = part === "keep_in" ? "box" : "cylinder";
     const shape = newShape(SCENE, part, kind);
     const { scene, place } = withNewShape(SCENE, part, shape);

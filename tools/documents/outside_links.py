@@ -13,7 +13,7 @@ from mkdocs.structure.pages import Page
 
 ROOT: Final = Path(__file__).parents[2]
 LINK: Final = re.compile(r"(\]\()([^)\s#]+)((?:#[^)\s]*)?\))")
-SHOWN: Final = {".md", ".png", ".svg", ".txt"}
+SHOWN_SUFFIXES: Final = {".md", ".png", ".svg", ".txt"}
 FOLDER: Final = "project"  # of the site, where they go; below it they lie as in the repository
 
 
@@ -75,7 +75,7 @@ def _uri(there: Path) -> str:
     inside = there.relative_to(ROOT).as_posix()
     if inside.startswith("docs/"):
         return inside.removeprefix("docs/")
-    text = "" if there.is_dir() or there.suffix in SHOWN else ".txt"  # a browser shows it instead of saving it
+    text = "" if there.is_dir() or there.suffix in SHOWN_SUFFIXES else ".txt"  # a browser shows it instead of saving it
     return f"{FOLDER}/{inside}{text}"
 
 

@@ -12,7 +12,7 @@ from typing import Final
 
 from teachpath_client.errors import ClientError
 from teachpath_client.link import Link, given_login
-from teachpath_client.rest import LOCAL
+from teachpath_client.rest import LOCAL_ADDRESS
 from teachpath_client.ros2.arm_show import ArmShow
 from teachpath_client.ros2.bridge import Names
 from teachpath_client.ros2.messages import typestore
@@ -21,7 +21,7 @@ from teachpath_client.station import Station
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
 
-ABOUT: Final = (
+COMMAND_HELP: Final = (
     "Show a station's arm to ROS 2, no ROS needed here: its joint states and where its tool is, live, what it did in "
     "each execution, tasks as markers, and the trajectory of a plan, once. Without --execute it moves nothing by "
     "itself; but a controller that listens to the topic of the trajectory moves its arm. A topic of ROS 2 as a tracker "
@@ -54,7 +54,7 @@ def add_ros2(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--execute-topic", default=names.asked, metavar="NAME", help="(%(default)s)")
     parser.add_argument("--world-frame", default=names.world, metavar="NAME", help="of TF (%(default)s)")
     parser.add_argument("--tool-frame", default=names.tool, metavar="NAME", help="of TF (%(default)s)")
-    parser.add_argument("--url", default=LOCAL, help="of the station (%(default)s)")
+    parser.add_argument("--url", default=LOCAL_ADDRESS, help="of the station (%(default)s)")
     parser.add_argument("--endpoint", default="tcp/127.0.0.1:7447", help="of the station's bus (%(default)s)")
     parser.add_argument("--prefix", default="teachpath/station", help="of the station's keys (%(default)s)")
     parser.add_argument(

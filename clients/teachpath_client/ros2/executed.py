@@ -19,7 +19,7 @@ from teachpath_proto.motion_pb2 import JointState
 
 STATES: Final = "states"  # topic of joint states in a recording
 MAX_POINTS: Final = 5000  # of what is published
-NEWEST: Final = 20  # executions that are looked at; more do not end between two looks
+MAX_EXECUTIONS: Final = 20  # executions that are looked at; more do not end between two looks
 
 
 class ExecutedTrajectories:
@@ -55,7 +55,7 @@ class ExecutedTrajectories:
         return published
 
     def _ended_now(self) -> list[str]:
-        executions = self._station.executions(limit=NEWEST)
+        executions = self._station.executions(limit=MAX_EXECUTIONS)
         return [each.id for each in executions if ExecutorState(each.status.state).is_resting]
 
 

@@ -20,9 +20,9 @@ Color = tuple[float, float, float, float]
 LINE_STRIP, ADD, DELETE_ALL = 4, 0, 3  # of visualization_msgs/Marker
 PATH_POINTS, DEMONSTRATION_POINTS = 200, 200  # at most, of a line
 PATH_WIDTH, DEMONSTRATION_WIDTH = 0.006, 0.002  # [m]
-PATH: Final[Color] = (0.0, 0.45, 0.7, 1.0)  # after Okabe and Ito: told apart without seeing red or green
-USED: Final[Color] = (0.34, 0.71, 0.91, 0.8)
-LEFT_OUT: Final[Color] = (0.6, 0.6, 0.6, 0.5)
+PATH_COLOR: Final[Color] = (0.0, 0.45, 0.7, 1.0)  # after Okabe and Ito: told apart without seeing red or green
+USED_COLOR: Final[Color] = (0.34, 0.71, 0.91, 0.8)
+LEFT_OUT_COLOR: Final[Color] = (0.6, 0.6, 0.6, 0.5)
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class TaskMarkers:
                 f"{task}/demonstrations",
                 f"{each.number}",
                 self._points(each),
-                USED if each.id in used else LEFT_OUT,
+                USED_COLOR if each.id in used else LEFT_OUT_COLOR,
                 DEMONSTRATION_WIDTH,
             )
             for each in self._station.demonstrations(task)
@@ -88,7 +88,7 @@ class TaskMarkers:
         for path in run.learned.paths if run else ():
             newest = self._station.get_path(path.id)
             points = curve_points(newest.curve, PATH_POINTS).tolist()
-            lines.append(Polyline(f"{task}/paths", f"{path.cluster}", points, PATH, PATH_WIDTH))
+            lines.append(Polyline(f"{task}/paths", f"{path.cluster}", points, PATH_COLOR, PATH_WIDTH))
         return lines
 
     def _points(self, demonstration: Demonstration) -> Points:
@@ -119,7 +119,7 @@ def _marker(world: str, group: str, number: int, action: int, line: Polyline | N
         pose=make(
             "geometry_msgs/msg/Pose",
             position=_vector("Point"),
-            orientation=make("geometry_msgs/msg/Quaternion", **_UNTURNED),
+            orientation=make("geometry_msgs/msg/Quaternion", **_IDENTITY_ORIENTATION),
         ),
         scale=_vector("Vector3", (line.width if line else 0.0, 0.0, 0.0)),
         color=make("std_msgs/msg/ColorRGBA", **dict(zip("rgba", color, strict=True))),
@@ -137,7 +137,7 @@ def _marker(world: str, group: str, number: int, action: int, line: Polyline | N
     )
 
 
-_UNTURNED: Final = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+_IDENTITY_ORIENTATION: Final = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 
 
 def _vector(kind: str, values: Sequence[float] = (0.0, 0.0, 0.0)) -> Any:

@@ -14,7 +14,10 @@ from teachpath_client.ros2.poses import Pose, composed, joint_name, tool_pose, u
 from teachpath_proto.sample_rules import NOT_MEASURED, sample_fault
 
 MAX_FRAMES = 10_000  # of TF that are kept
-CLOSES, OPENS = 0.6, 0.4  # share by which a gripper is closed, over which it grasps and under which it lets go
+GRASP_THRESHOLD, RELEASE_THRESHOLD = (
+    0.6,
+    0.4,
+)  # share by which a gripper is closed, over which it grasps and under which it lets go
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +134,7 @@ class JointInterpreter(Interpreter):
             raise Malformed("a joint's position is not finite")
         if self._gripper in angles:
             share = (angles[self._gripper] - self._opened) / (self._closed - self._opened)
-            self._grasps = share > (OPENS if self._grasps else CLOSES)
+            self._grasps = share > (RELEASE_THRESHOLD if self._grasps else GRASP_THRESHOLD)
         wanted = {name: angles.get(self._prefix + name) for name in self._names}
         known = {name: angle for name, angle in wanted.items() if angle is not None}
         if not known:

@@ -13,7 +13,7 @@ from typing import Final, Self
 from teachpath_client.devices.source import Capabilities, configure
 from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
-from teachpath_client.rest import LOCAL
+from teachpath_client.rest import LOCAL_ADDRESS
 from teachpath_client.ros2.messages import BOOL, JOINTS, POSE, TRANSFORMS, Malformed, decode, type_hash
 from teachpath_client.ros2.node import Node
 from teachpath_client.ros2.readings import (
@@ -56,7 +56,7 @@ class Ros2Settings:
     # TF: one above it, in which it is told; else the one its own transform is told in
     frame: str = ""
     # JointState: the station whose arm gives the kinematics
-    url: str = LOCAL
+    url: str = LOCAL_ADDRESS
     # JointState: before the names of the arm's joints
     prefix: str = ""
     # JointState: joint of the fingers, and its positions

@@ -14,7 +14,7 @@ const AXES = ["x", "y", "z"];
 const MAX_COORDINATE = 10; // [m] the service accepts no more
 const HELP =
   "Drag the yellow ball to where the object lies and the green one to where it is to go: they move on their level. The path follows.";
-const EDITED = "Save the version first; only what is saved is adapted.";
+const UNSAVED_SENTENCE = "Save the version first; only what is saved is adapted.";
 
 /** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function adaptationSection(place, editor) {
@@ -153,7 +153,7 @@ class AdaptationSection {
   /** @param {string} [certainty] of the path as it is dragged */
   #say(certainty) {
     if (!this.#model) this.status.textContent = HELP;
-    else if (this.editor.draft?.edited) this.status.textContent = EDITED;
+    else if (this.editor.draft?.edited) this.status.textContent = UNSAVED_SENTENCE;
     else if (this.#note) this.status.textContent = this.#note;
     else if (certainty !== undefined) this.status.textContent = certainty;
   }

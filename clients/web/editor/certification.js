@@ -7,7 +7,7 @@ import { patchChildren } from "../patch_children.js";
 import { formatLength, formatNumber } from "../texts.js";
 import { versionTitle } from "./versions.js";
 
-export const UNSAVED = "Save the version first; only what is saved is certified.";
+export const UNSAVED_SENTENCE = "Save the version first; only what is saved is certified.";
 
 /** @typedef {Job & {path: string, version: import("./draft.js").BaseVersion, plan?: Plan}} Planning */
 
@@ -22,7 +22,7 @@ export function isCertified({ draft, context }) {
 export function certificationSection(place, editor, foot) {
   const certify = element("button", { type: "button", id: "edit-certify" });
   const status = element("div", { id: "edit-certified", role: "status" });
-  const why = element("p", { class: "note" }, UNSAVED);
+  const why = element("p", { class: "note" }, UNSAVED_SENTENCE);
   place.append(why, status);
   foot.append(certify);
   /** @type {Planning | null} */
@@ -67,7 +67,7 @@ export function certificationSection(place, editor, foot) {
       }
       if (!draft || what === "drag" || what === "feasibility") return;
       certify.replaceChildren(icon("certify"), `Certify version ${draft.base.number}`);
-      block(certify, draft.edited ? UNSAVED : "");
+      block(certify, draft.edited ? UNSAVED_SENTENCE : "");
       showPrimary();
       why.hidden = !draft.edited;
       render();

@@ -3,7 +3,7 @@ import { element } from "../elements.js";
 import { formatNumber } from "../texts.js";
 
 const AXES = ["x", "y", "z"];
-const LEAST = 0.0005; // [m] a change that is said
+const MIN_CHANGE = 0.0005; // [m] a change that is said
 const OFFSET = 18; // [px] from the point, so that neither it nor its handles are covered
 
 export class ChangeLabel {
@@ -32,7 +32,7 @@ export class ChangeLabel {
 
 /** How far something has come, in millimetres along the axes in which it has. @param {number[]} by [m] */
 export function changeText(by) {
-  const parts = by.flatMap((value, k) => (Math.abs(value) < LEAST ? [] : [`${AXES[k]} ${signed(1000 * value)}`]));
+  const parts = by.flatMap((value, k) => (Math.abs(value) < MIN_CHANGE ? [] : [`${AXES[k]} ${signed(1000 * value)}`]));
   return parts.length ? `${parts.join("  ")}\u202fmm` : "";
 }
 

@@ -5,7 +5,7 @@ import { capitalize, formatLength, formatNumber } from "../texts.js";
 import { colorFunction, legendColors, METRICS } from "./color_scale.js";
 import { movePoints } from "./curve_edits.js";
 
-const PINNED = "It is pinned; unlock start and goal first.";
+const PINNED_SENTENCE = "It is pinned; unlock start and goal first.";
 
 /** @param {HTMLElement} place @param {Editor} editor @returns {EditorSection} */
 export function feasibilitySection(place, editor) {
@@ -77,11 +77,16 @@ function content({ draft, feasibility }) {
         { class: "buttons" },
         element(
           "button",
-          { type: "button", id: "edit-suggestion", "data-key": "suggestion", ...blocked(pinned ? PINNED : "") },
+          {
+            type: "button",
+            id: "edit-suggestion",
+            "data-key": "suggestion",
+            ...blocked(pinned ? PINNED_SENTENCE : ""),
+          },
           `Move control point ${suggestion.control_point + 1} by ${formatLength(size)}`,
         ),
       ),
-    size > 0 && pinned && element("p", { class: "note" }, PINNED),
+    size > 0 && pinned && element("p", { class: "note" }, PINNED_SENTENCE),
   ];
 }
 

@@ -1,8 +1,8 @@
 // The numbers of the control points in the view: those of all while they are few, else of the selected ones.
 import { textSprite } from "../text_sprite.js";
 
-const FEW = 24; // control points
-const MANY = 60; // numbers are no help beyond
+const FULL_NUMBERING_LIMIT = 24; // control points
+const NUMBERING_LIMIT = 60; // numbers are no help beyond
 const SIZE = 0.024; // share of the picture's height
 
 export class PointNumbers {
@@ -46,6 +46,6 @@ export class PointNumbers {
  * @param {number[]} selected
  */
 export function numberedPoints(count, selected) {
-  if (count <= FEW) return Array.from({ length: count }, (_, index) => index);
-  return selected.length <= MANY ? selected : [];
+  if (count <= FULL_NUMBERING_LIMIT) return Array.from({ length: count }, (_, index) => index);
+  return selected.length <= NUMBERING_LIMIT ? selected : [];
 }

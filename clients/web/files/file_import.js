@@ -23,7 +23,7 @@ import { get, post, remove, resourcePath, upload } from "../api.js";
 export const isMarked = (said) => Boolean(said && (said.whole || said.grasp !== null || said.release !== null));
 
 /** @type {Readonly<MotionMarks>} */
-export const UNMARKED = Object.freeze({ grasp: null, release: null, whole: false });
+export const NO_MARKS = Object.freeze({ grasp: null, release: null, whole: false });
 
 /** @type {Readonly<Choices>} */
 export const NO_CHOICES = Object.freeze({
@@ -66,7 +66,7 @@ export class ImportFile {
 
   /** What was said of the motion that is shown. */
   get said() {
-    return this.choices.marks[this.motion] ?? UNMARKED;
+    return this.choices.marks[this.motion] ?? NO_MARKS;
   }
 
   /** Where the motion that is shown takes and puts the object: as marked, else as found where that is sure. */
@@ -123,7 +123,7 @@ export class FileImport {
   /** Say where the motion that is shown takes and puts the object. @param {ImportFile} file @param {Partial<MotionMarks>} marks */
   mark(file, marks) {
     const { marks: others } = file.choices;
-    this.choose(file, { marks: { ...others, [file.motion]: { ...UNMARKED, ...marks } } });
+    this.choose(file, { marks: { ...others, [file.motion]: { ...NO_MARKS, ...marks } } });
   }
 
   /** @param {ImportFile} file @param {number} motion that is to be shown */

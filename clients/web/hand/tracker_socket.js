@@ -8,7 +8,7 @@ const PING_INTERVAL = 1000; // [ms]
 const FIRST_PINGS = 10; // sent ten times as often
 const PINGS_KEPT = 30; // the fastest of them gives the offset
 const REPORT_TIMEOUT = 30_000; // [ms] for the report at the end
-const REFUSED = 1008; // close code of a service that does not take this tracker
+const REFUSED_CODE = 1008; // close code of a service that does not take this tracker
 
 // The page's clock: milliseconds since the Unix epoch that never run back.
 export const clock = () => performance.timeOrigin + performance.now();
@@ -36,7 +36,7 @@ export class TrackerSocket {
       onOpen: () => this.#ping(),
       onMessage: (text) => this.#handleMessage(JSON.parse(text)),
       onState: (state, { reason = "" }) => this.#handleState(state, reason),
-      isRefusal: (code) => code === REFUSED,
+      isRefusal: (code) => code === REFUSED_CODE,
     });
   }
 

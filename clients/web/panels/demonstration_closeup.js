@@ -11,7 +11,7 @@ import { compareMotions, overShare, trimmedSamples } from "./demonstration_compa
 
 const ABOUT =
   "Say the number of a demonstration, to trim it; and that of another one, to see both over time. Nothing of the recording is lost.";
-const MOST = 2000; // points of a motion that are read
+const MAX_POINTS = 2000; // points of a motion that are read
 const [AXIS_HEIGHT, DISTANCE_HEIGHT] = [84, 110]; // [px]
 const LINES = { one: "closeup-one", other: "closeup-other" };
 
@@ -128,7 +128,7 @@ class Closeup {
     const { id } = demonstration;
     const key = `${id} ${trimKey(demonstration)}`;
     if (known?.key === key) return known;
-    return { id, key, motion: await get(`${resourcePath("demonstrations", id, "trajectory")}?most=${MOST}`) };
+    return { id, key, motion: await get(`${resourcePath("demonstrations", id, "trajectory")}?most=${MAX_POINTS}`) };
   }
 
   get #demonstration() {

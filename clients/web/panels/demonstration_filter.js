@@ -20,7 +20,7 @@ export const GROUPS = {
   discarded: "discarded",
 };
 
-const WAY = "way "; // and its number: the group of a way
+const WAY_GROUP_PREFIX = "way "; // and its number: the group of a way
 const VERDICTS = ["reject", "repaired", "clean"]; // what needs a look comes first
 
 /** @typedef {{search: string, group: string, order: string}} Filter */
@@ -35,7 +35,10 @@ export const NO_FILTER = { search: "", group: "all", order: "newest" };
  */
 export function groupsWithWays(ways) {
   const numbers = [...new Set(ways.values())].sort((a, b) => a - b);
-  return [...Object.entries(GROUPS), ...numbers.map((way) => /** @type {[string, string]} */ ([WAY + way, WAY + way]))];
+  return [
+    ...Object.entries(GROUPS),
+    ...numbers.map((way) => /** @type {[string, string]} */ ([WAY_GROUP_PREFIX + way, WAY_GROUP_PREFIX + way])),
+  ];
 }
 
 /**
@@ -58,7 +61,7 @@ function isOfGroup({ verdict, mark, discarded_ns }, way, group) {
   if (group === "all") return true;
   if (group === "discarded") return Boolean(discarded_ns);
   if (group === "good" || group === "bad") return mark === group;
-  if (group.startsWith(WAY)) return group === WAY + way;
+  if (group.startsWith(WAY_GROUP_PREFIX)) return group === WAY_GROUP_PREFIX + way;
   return verdict === group && !discarded_ns;
 }
 

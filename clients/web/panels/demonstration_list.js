@@ -11,9 +11,10 @@ import { DemonstrationSelection } from "./demonstration_selection.js";
 import { markFocus, trackFocus } from "./focus.js";
 
 const PAGE_SIZE = 60; // rows that are shown at a time
-const FEW = 10; // demonstrations that are overlooked without searching
-const AWAY = "The demonstrations cannot be read yet: the service does not answer.";
-const NOTHING = "No demonstrations yet. Show the task with a tracker, or let a synthetic hand do it:";
+const SEARCH_THRESHOLD = 10; // demonstrations that are overlooked without searching
+const SERVICE_AWAY_SENTENCE = "The demonstrations cannot be read yet: the service does not answer.";
+const NO_DEMONSTRATIONS_SENTENCE =
+  "No demonstrations yet. Show the task with a tracker, or let a synthetic hand do it:";
 const ABOUT_MARKS = `${MARK_SYMBOLS[""]} marks one good, then bad: the bad ones are not learned from. × discards one; it can be brought back.`;
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
@@ -63,7 +64,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
     page = Math.max(0, Math.min(page, Math.ceil(found.length / PAGE_SIZE) - 1));
     const shown = found.slice(page * PAGE_SIZE, (page + 1) * PAGE_SIZE);
     if (!readOnly) sceneLayers.trajectories.request(shown);
-    tools.update(all.length > FEW, groupsWithWays(ways));
+    tools.update(all.length > SEARCH_THRESHOLD, groupsWithWays(ways));
     patchChildren(head, summary(state));
     const others = (state.tasks ?? []).filter(({ name }) => name !== state.task);
     patchChildren(several, !readOnly && all.length > 1 && selection.toolbar(found, others));
@@ -127,9 +128,12 @@ function filterTools(onChoice) {
  * @returns {Child}
  */
 function summary({ task, tasks, demonstrations, guidance }) {
-  if (demonstrations === null && tasks === null) return hint(AWAY);
+  if (demonstrations === null && tasks === null) return hint(SERVICE_AWAY_SENTENCE);
   if (!demonstrations?.length) {
-    return [hint(NOTHING), codeBlock(`teachpath-client synthetic --task ${task || "demo"} --scene paper`)];
+    return [
+      hint(NO_DEMONSTRATIONS_SENTENCE),
+      codeBlock(`teachpath-client synthetic --task ${task || "demo"} --scene paper`),
+    ];
   }
   const kept = demonstrations.filter((d) => !d.discarded_ns);
   const count = element("strong", {}, kept.length.toLocaleString("en"));

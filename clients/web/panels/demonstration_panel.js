@@ -11,7 +11,7 @@ import { formatNumber, pluralize } from "../texts.js";
 import { createParts, demonstrationRow, senderFacts, sessionText } from "./demonstration_parts.js";
 import { countFresh, learn, learnButton } from "./learning.js";
 
-const HIDDEN = "The page was hidden, so recording has stopped; what was carried is lost.";
+const PAGE_HIDDEN_SENTENCE = "The page was hidden, so recording has stopped; what was carried is lost.";
 const KEYS = "Carry the object: Enter grasps and lets go, arrows move, Page Up and Page Down change the height";
 const NOTHING_SHOWN = "Grasp the object, carry it to its goal and let go; each time makes one demonstration.";
 
@@ -50,7 +50,7 @@ class DemonstrationPanel {
     discard.addEventListener("click", () => this.#setDiscarded(true));
     undo.addEventListener("click", () => this.#setDiscarded(false));
     document.addEventListener("visibilitychange", () => {
-      if (document.hidden && this.session && !this.headset) this.#stop(HIDDEN, { discard: true });
+      if (document.hidden && this.session && !this.headset) this.#stop(PAGE_HIDDEN_SENTENCE, { discard: true });
     });
     addEventListener("pagehide", () => this.session?.sender.close());
     this.#checkHeadset();

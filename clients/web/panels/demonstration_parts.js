@@ -20,7 +20,7 @@ const HELP = [
   ["Keyboard", "Enter grasps and lets go; arrows, Page Up, Page Down"],
   ["Gamepad", "hold A; left stick moves, right stick changes the height"],
 ];
-const ABOUT = "No glove? Carry the object in the view yourself; the recorder takes it like any tracker.";
+const DEMONSTRATION_HELP = "No glove? Carry the object in the view yourself; the recorder takes it like any tracker.";
 
 export function createParts() {
   /** @param {string} text @param {import("../elements.js").Attributes} attributes */
@@ -38,7 +38,7 @@ export function createParts() {
   const idle = element(
     "div",
     {},
-    hint(ABOUT),
+    hint(DEMONSTRATION_HELP),
     nameField,
     countdown,
     element("p", { class: "buttons" }, start, headset),

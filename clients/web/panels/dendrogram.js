@@ -3,8 +3,8 @@ import { element, svgElement } from "../elements.js";
 import { wayClass } from "../way_colors.js";
 
 const WIDTH = 356;
-const LEFT = 30; // room for the numbers of the leaves
-const RIGHT = 8;
+const LEFT_MARGIN = 30; // room for the numbers of the leaves
+const RIGHT_MARGIN = 8;
 const MIN_LABELLED_ROW = 11; // [px] rows below this have no numbers
 
 /**
@@ -39,7 +39,11 @@ export class DendrogramView {
     const tall = row * leaves.length + 8;
     /** @param {number} leaf */
     const yOf = (leaf) => 4 + (leaf + 0.5) * row;
-    const nodes = demonstrations.map((id) => ({ x: LEFT, y: yOf(leaves.indexOf(id)), first: leaves.indexOf(id) }));
+    const nodes = demonstrations.map((id) => ({
+      x: LEFT_MARGIN,
+      y: yOf(leaves.indexOf(id)),
+      first: leaves.indexOf(id),
+    }));
     this.#links = merges.map(([left, right, height]) => this.#link(nodes, left, right, height));
     this.#dots = leaves.map((_, i) => dot(yOf(i), row));
     const drawn = leaves.map((id, i) => leaf(id, yOf(i), row, this.#dots[i], numbers.get(id)));
@@ -83,7 +87,7 @@ export class DendrogramView {
 
   /** @param {number} height */
   #xOf(height) {
-    return LEFT + (height / this.#top) * (WIDTH - LEFT - RIGHT);
+    return LEFT_MARGIN + (height / this.#top) * (WIDTH - LEFT_MARGIN - RIGHT_MARGIN);
   }
 
   /** @param {PointerEvent} event */
@@ -94,7 +98,7 @@ export class DendrogramView {
     /** @param {PointerEvent} event */
     const move = ({ clientX }) => {
       const x = ((clientX - box.left) / box.width) * WIDTH;
-      this.onDrag(((x - LEFT) / (WIDTH - LEFT - RIGHT)) * this.#top);
+      this.onDrag(((x - LEFT_MARGIN) / (WIDTH - LEFT_MARGIN - RIGHT_MARGIN)) * this.#top);
     };
     this.handle.setPointerCapture(event.pointerId);
     this.handle.addEventListener("pointermove", move, { signal });
@@ -105,7 +109,7 @@ export class DendrogramView {
 }
 
 /** @param {number} y @param {number} row */
-const dot = (y, row) => svgElement("circle", { cx: LEFT - 4, cy: y, r: Math.min(3.5, row / 2), class: "dot" });
+const dot = (y, row) => svgElement("circle", { cx: LEFT_MARGIN - 4, cy: y, r: Math.min(3.5, row / 2), class: "dot" });
 
 /**
  * @param {string} id
@@ -115,8 +119,8 @@ const dot = (y, row) => svgElement("circle", { cx: LEFT - 4, cy: y, r: Math.min(
  * @param {number | undefined} number of the demonstration
  */
 function leaf(id, y, row, dot, number) {
-  const place = { x: LEFT - 12, y: y + 4, "text-anchor": "end" };
+  const place = { x: LEFT_MARGIN - 12, y: y + 4, "text-anchor": "end" };
   const text = row >= MIN_LABELLED_ROW && svgElement("text", place, String(number ?? "?"));
-  const ground = svgElement("rect", { x: 0, y: y - row / 2, width: LEFT + 6, height: row, class: "ground" });
+  const ground = svgElement("rect", { x: 0, y: y - row / 2, width: LEFT_MARGIN + 6, height: row, class: "ground" });
   return svgElement("g", { "data-focus": `demonstrations ${id}`, class: "leaf" }, ground, dot, text);
 }

@@ -12,7 +12,7 @@ import { PlanNames } from "./plan_names.js";
 
 const MAX_POINTS = 1500; // of the plots
 const MAX_LISTED = 20;
-const NOTHING = "Nothing has been executed yet. What the arm does is kept and can be looked at here.";
+const NO_EXECUTIONS_SENTENCE = "Nothing has been executed yet. What the arm does is kept and can be looked at here.";
 
 /** @param {HTMLElement} place @param {Context} context */
 export function executionReplay(place, context) {
@@ -118,7 +118,7 @@ class ExecutionReplay {
     const rows = newest.map((one) =>
       executionRow(one, this.#names.of(one.plan), one.id === this.#execution, stationOf(one)),
     );
-    patchChildren(this.list, rows.length ? rows : element("li", { class: "hint" }, NOTHING));
+    patchChildren(this.list, rows.length ? rows : element("li", { class: "hint" }, NO_EXECUTIONS_SENTENCE));
   }
 }
 

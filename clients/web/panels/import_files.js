@@ -3,7 +3,7 @@ import { get, patch, post, resourcePath } from "../api.js";
 import { displayNameOf, idOf, taskTitle } from "../display_names.js";
 import { blocked, closestData, element, hint } from "../elements.js";
 import { fileCard, formatColumns, parseColumns } from "../files/file_card.js";
-import { FileImport, numbered, UNMARKED } from "../files/file_import.js";
+import { FileImport, NO_MARKS, numbered } from "../files/file_import.js";
 import { importProgress, importSummary, standing } from "../files/import_parts.js";
 import { listenForMarks } from "../files/mark_input.js";
 import { isName, nameRefusal } from "../names.js";
@@ -62,7 +62,7 @@ class ImportPanel {
     this.#listenForDrops();
     listenForMarks(this.cards, {
       times: (id) => this.files.find(id)?.report?.times,
-      marks: (id) => this.files.find(id)?.shownMarks ?? UNMARKED,
+      marks: (id) => this.files.find(id)?.shownMarks ?? NO_MARKS,
       onMark: (id, mark, time) => this.#mark(id, mark, time),
     });
     context.eventStream.on("jobs", ({ id }) => {
@@ -259,7 +259,7 @@ class ImportPanel {
   #draw() {
     const file = this.#isShown ? this.files.find(this.open) : undefined;
     const { times = [], positions = [] } = file?.report ?? {};
-    const { grasp, release } = file?.shownMarks ?? UNMARKED;
+    const { grasp, release } = file?.shownMarks ?? NO_MARKS;
     const carried =
       grasp === null || release === null ? [] : positions.filter((_, k) => times[k] >= grasp && times[k] <= release);
     this.context.overlay.setLine(LINES.motion, positions.length ? positions : null, { opacity: 0.8 });

@@ -3,7 +3,7 @@ import { post, resourcePath } from "../api.js";
 import { blocked, element } from "../elements.js";
 import { icon } from "../icons.js";
 
-const BUSY = "The task is being learned now.";
+const LEARNING_SENTENCE = "The task is being learned now.";
 
 /** The demonstrations of the task that can be learned from. @param {State} state */
 export const usableDemonstrations = ({ demonstrations }) =>
@@ -28,7 +28,7 @@ export function learnButton({ jobs }, text, isNext = true) {
     {},
     element(
       "button",
-      { type: "button", class: isNext && "primary", ...data, ...blocked(busy ? BUSY : "") },
+      { type: "button", class: isNext && "primary", ...data, ...blocked(busy ? LEARNING_SENTENCE : "") },
       icon("learn"),
       text,
     ),

@@ -2,7 +2,7 @@
 import { get } from "../api.js";
 import { taskTitle } from "../display_names.js";
 
-const MOST = 200; // newest plans and paths that are asked for
+const MAX_ENTRIES = 200; // newest plans and paths that are asked for
 
 export class PlanNames {
   /** @type {Map<string, string>} */
@@ -21,7 +21,9 @@ export class PlanNames {
   async read(plans, tasks) {
     const unknown = plans.filter((plan) => !this.#names.has(plan));
     if (!unknown.length) return false;
-    const lists = await Promise.all([get(`plans?limit=${MOST}`), get(`paths?limit=${MOST}`)]).catch(() => null);
+    const lists = await Promise.all([get(`plans?limit=${MAX_ENTRIES}`), get(`paths?limit=${MAX_ENTRIES}`)]).catch(
+      () => null,
+    );
     if (!lists) return false; // asked again with the next change
     const found = planNames(...lists, tasks);
     for (const plan of unknown) this.#names.set(plan, found.get(plan) ?? "");

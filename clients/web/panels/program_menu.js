@@ -12,7 +12,8 @@ const FORMATS = [
   ["krl", "KRL"],
   ["ls", "Fanuc LS"],
 ];
-const ABOUT = "The motion along the path, from rest to rest. The head of each file says what the certificate covers.";
+const PROGRAM_HELP =
+  "The motion along the path, from rest to rest. The head of each file says what the certificate covers.";
 
 /**
  * The menu of a plan's files; a refusal is shown like every other one.
@@ -27,5 +28,5 @@ export function programMenu(plan, attempt) {
     return button;
   });
   const title = element("summary", {}, "Take it with you");
-  return element("details", {}, title, hint(ABOUT), element("p", { class: "buttons" }, buttons));
+  return element("details", {}, title, hint(PROGRAM_HELP), element("p", { class: "buttons" }, buttons));
 }

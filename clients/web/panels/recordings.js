@@ -17,7 +17,7 @@ const PHASE_LABELS = {
   release: "letting go",
   return: "going back",
 };
-const AWAY = "Not known: the service does not answer. What was recorded until then is kept.";
+const SERVICE_AWAY_SENTENCE = "Not known: the service does not answer. What was recorded until then is kept.";
 const NOTHING =
   "No tracker is here. Start one beside the hand, and it appears within a second; or show the task with the mouse, above.";
 
@@ -38,7 +38,7 @@ export function recordingList(place, { store, attempt }) {
 
 /** @param {State} state @returns {Child} */
 function content({ connection, recordings, trackers, station, task, tasks }) {
-  if (connection === "lost") return hint(AWAY);
+  if (connection === "lost") return hint(SERVICE_AWAY_SENTENCE);
   const idle = trackers.filter(({ name }) => !recordings.some(({ tracker }) => tracker === name));
   const rows = [
     ...recordings.map((recording) => recordingRow(recording, task, taskTitle(tasks, recording.task))),

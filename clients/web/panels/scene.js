@@ -17,9 +17,9 @@ import { formatMoment } from "../texts.js";
 
 /** @typedef {import("../scenes/scene_draft.js").Place} Place */
 
-const ABOUT = "What stands around the arm. Every change is shown in the view at once, and holds when it is saved.";
-const AWAY = "The scenes cannot be read yet: the service does not answer.";
-const UNCHANGED = "Nothing was changed since this version.";
+const SCENE_HELP = "What stands around the arm. Every change is shown in the view at once, and holds when it is saved.";
+const SERVICE_AWAY_SENTENCE = "The scenes cannot be read yet: the service does not answer.";
+const UNCHANGED_SENTENCE = "Nothing was changed since this version.";
 
 /** @type {ScenePanel | null} */
 let scenes = null;
@@ -131,7 +131,7 @@ class ScenePanel {
   async #readAgain() {
     await this.#read().catch((error) => {
       if (!(error instanceof ApiError) || error.status !== 0) throw error;
-      if (!this.#draft) this.head.state.textContent = AWAY;
+      if (!this.#draft) this.head.state.textContent = SERVICE_AWAY_SENTENCE;
     });
   }
 
@@ -205,7 +205,7 @@ class ScenePanel {
     state.textContent = draft ? stateText(draft, this.#versions) : "The scene is being read …";
     block(undo, draft?.undoLabel ? "" : "There is no step to undo.", `Undo ${draft?.undoLabel}`);
     block(redo, draft?.redoLabel ? "" : "No step was undone.", `Redo ${draft?.redoLabel}`);
-    block(revert, draft?.isEdited ? "" : UNCHANGED);
+    block(revert, draft?.isEdited ? "" : UNCHANGED_SENTENCE);
     this.list.show(draft?.scene ?? null, this.#chosen);
     this.fields.show(shape, this.#chosen?.part ?? null);
     this.floor.show(draft?.scene ?? null);
@@ -248,7 +248,7 @@ function headParts(place) {
   const [undo, redo] = [button("undo", icon("undo"), "Undo"), button("redo", icon("redo"), "Redo")];
   const revert = button("revert", "Back to the version");
   place.append(
-    hint(ABOUT),
+    hint(SCENE_HELP),
     element("p", { class: "field" }, element("label", { for: "scene-name" }, "Scene to change"), select),
     element("p", { class: "buttons" }, undo, redo, revert),
   );

@@ -14,7 +14,8 @@ const HELP = [
   ["Gripper", "G, or the button, while the clutch is held"],
   ["Headset", "the right hand leads, its pinch or trigger closes the gripper; the left one's is the clutch"],
 ];
-const ABOUT = "Move the arm by hand, without a path: it follows while the clutch is held, and rests when it is let go.";
+const TELEOP_HELP =
+  "Move the arm by hand, without a path: it follows while the clutch is held, and rests when it is let go.";
 const WAITING_FOR_CLUTCH = "press the clutch"; // the executor's reason begins so while it waits
 
 /**
@@ -49,7 +50,7 @@ export function createParts() {
   });
   const beginRow = element("p", { class: "buttons" }, begin);
   const fields = [field(hand, "Hand"), calibrationField, field(orientation, "Tool"), rule];
-  const idle = element("div", {}, hint(ABOUT), fields, beginRow);
+  const idle = element("div", {}, hint(TELEOP_HELP), fields, beginRow);
   const statusText = element("p", { class: "session-status", role: "status" });
   const held = { class: "primary hold", "aria-pressed": "false", title: "Or hold Enter" };
   const clutch = button("Clutch: hold to move the arm", held);

@@ -9,7 +9,7 @@
  */
 
 /** @type {Part[]} */
-export const PARTS = ["obstacles", "carried", "keep_in", "keep_out"];
+export const SHAPE_ROLES = ["obstacles", "carried", "keep_in", "keep_out"];
 const SIZES = { box: [0.1, 0.1, 0.1], cylinder: [0.05, 0.1], sphere: [0.05] }; // of what is new [m]
 const OBJECT_SIZES = { box: [0.04, 0.04, 0.04], cylinder: [0.02, 0.06], sphere: [0.02] }; // between the gripper's fingers [m]
 const CAGE_SIZE = [3, 3, 3]; // around any arm that stands on the floor [m]
@@ -227,7 +227,7 @@ export function copyOf(scene, shape) {
 }
 
 /** The names of all shapes. @param {Scene} scene */
-export const namesIn = (scene) => PARTS.flatMap((part) => shapesOf(scene, part).map(({ name }) => name));
+export const namesIn = (scene) => SHAPE_ROLES.flatMap((part) => shapesOf(scene, part).map(({ name }) => name));
 
 /** A name that no shape has, by a number behind it where there is one. @param {Scene} scene @param {string} wanted */
 export function freeName(scene, wanted) {

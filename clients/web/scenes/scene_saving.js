@@ -9,8 +9,8 @@ import { sceneBody } from "./scene_draft.js";
 
 const PLANS = "Ways that were certified in the version before do not start in this one: certify them again.";
 const FORM = "scene-form";
-const LAST = "A station needs a scene: make another one first.";
-const UNCHANGED = "Nothing was changed since this version.";
+const LAST_SCENE_SENTENCE = "A station needs a scene: make another one first.";
+const UNCHANGED_SENTENCE = "Nothing was changed since this version.";
 const AUTHOR_KEY = "operator"; // who works at this browser, also for control of the arm
 
 export class SceneSaving {
@@ -77,8 +77,8 @@ export class SceneSaving {
   show(draft, missing, isLast) {
     if (draft && draft.name !== this.draft?.name) this.name.value = titleOf(draft.original);
     this.draft = draft;
-    block(this.button, missing || (draft?.isEdited || this.isOther ? "" : UNCHANGED));
-    block(this.removal, missing || (isLast ? LAST : ""));
+    block(this.button, missing || (draft?.isEdited || this.isOther ? "" : UNCHANGED_SENTENCE));
+    block(this.removal, missing || (isLast ? LAST_SCENE_SENTENCE : ""));
     this.verb.data = this.isOther ? "Save as another scene" : "Save version";
   }
 

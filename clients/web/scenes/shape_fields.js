@@ -15,7 +15,8 @@ const SIZES = {
 };
 const AXES = ["x", "y", "z"];
 export const MAX_LENGTH = 10_000; // [mm] the service accepts no more
-const NOTHING = "Choose a shape in the list, or add one: its numbers stand here, and arrows in the view move it.";
+const NO_SHAPE_SENTENCE =
+  "Choose a shape in the list, or add one: its numbers stand here, and arrows in the view move it.";
 
 /**
  * @typedef {import("./scene_draft.js").Part} Part
@@ -44,7 +45,7 @@ export class ShapeFields {
     this.color = element("input", { type: "color", id: "shape-color" });
     this.numbers = [...sizeFields(), ...positionFields(), ...turnFields(), massField()];
     this.place = place;
-    this.nothing = hint(NOTHING);
+    this.nothing = hint(NO_SHAPE_SENTENCE);
     this.parts = element(
       "div",
       {},

@@ -6,7 +6,7 @@ import {
   meshExtent,
   newMesh,
   newShape,
-  PARTS,
+  SHAPE_ROLES,
   shapeAt,
   shapesOf,
   withNewShape,
@@ -83,7 +83,7 @@ export class ShapeList {
   /** @param {Scene | null} scene @param {Place | null} chosen */
   show(scene, chosen) {
     this.chosen = chosen;
-    const groups = scene ? PARTS.map((part) => group(scene, part)).filter((one) => one.children.length) : [];
+    const groups = scene ? SHAPE_ROLES.map((part) => group(scene, part)).filter((one) => one.children.length) : [];
     const isSame = groups.map((one) => one.outerHTML).join("") === this.list.innerHTML;
     if (!isSame) this.list.replaceChildren(...groups);
     this.list.value = chosen ? placeKey(chosen) : "";

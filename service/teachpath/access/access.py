@@ -20,9 +20,9 @@ from teachpath.records import AccessToken, Capability, Subject
 REFRESH_INTERVAL: Final = 1.0  # [s] after which a token that was made or revoked by another process counts
 USE_INTERVAL_NS: Final = 60 * 10**9  # between two notes of the use of one token
 
-ANYBODY: Final = Subject("", frozenset(Capability))  # where the station does not ask
-STRANGER: Final = Subject("not signed in", frozenset())  # a name that no token can have
-NOBODY: Final = (
+UNAUTHENTICATED_SUBJECT: Final = Subject("", frozenset(Capability))  # where the station does not ask
+REFUSED_SUBJECT: Final = Subject("not signed in", frozenset())  # a name that no token can have
+NO_ADMINISTRATOR_SENTENCE: Final = (
     "auth.mode is token, and there is neither a token that holds nor a person: nobody can do more than stop the arm; "
     "begin with: teachpath person add NAME --role administer"
 )
@@ -117,7 +117,7 @@ class Access:
             NotSignedIn: nobody who is known; the sentence has the way out.
         """
         if self.mode == "none":
-            return ANYBODY
+            return UNAUTHENTICATED_SUBJECT
         if self.proxy:
             return self.proxy.subject(forwarded)
         if session and not authorization:
@@ -163,7 +163,7 @@ class Access:
             return []
         now = self._now_ns()
         somebody = self.sessions.has_people or any(_holds(token, now) for token in self._tokens.values())
-        return [] if somebody else [NOBODY]
+        return [] if somebody else [NO_ADMINISTRATOR_SENTENCE]
 
     def _known(self, token: str) -> AccessToken:
         # Looked up by a hash that nobody can choose: how long that takes says nothing of the tokens that are there.

@@ -24,7 +24,7 @@ from teachpath_proto.keys import is_name, name_refusal
 LIFE: Final = 600.0  # [s] that somebody may take at the provider
 MAX_BEGUN: Final = 10_000  # sign-ins that are under way; beyond, the oldest is forgotten
 MAX_SUBJECT: Final = 255  # characters of who somebody is at the provider (OpenID Connect Core, 2)
-AGAIN: Final = "sign in again"
+SIGN_IN_SUGGESTION: Final = "sign in again"
 
 
 class Provider(Protocol):
@@ -140,7 +140,7 @@ class ProviderSignIn:
         # Who talks to several providers could be given the code of one as that of another (RFC 9207).
         is_named = answer.issuer or metadata.get("authorization_response_iss_parameter_supported") is True
         if is_named and answer.issuer != metadata["issuer"]:
-            raise NotSignedIn(f"somebody else than {self.name} has sent this answer; {AGAIN}")
+            raise NotSignedIn(f"somebody else than {self.name} has sent this answer; {SIGN_IN_SUGGESTION}")
         claims = self._provider.claims(CodeGrant(answer.code, begun.redirect_uri, begun.verifier, begun.nonce))
         signed_in = self._sessions.sign_in_from_provider(self._person(claims))
         self._attempts.succeed(answer.state, begun.address)
@@ -149,14 +149,16 @@ class ProviderSignIn:
     def _taken(self, state: str, secret: str) -> _Pending:
         """Return the sign-in of a state, and forget it; where another browser began it, it stays."""
         if len(secret) > MAX_LENGTH or len(state) > MAX_LENGTH:
-            raise NotSignedIn(f"this is no answer to a sign-in of this station; {AGAIN}")
+            raise NotSignedIn(f"this is no answer to a sign-in of this station; {SIGN_IN_SUGGESTION}")
         with self._lock:
             begun = self._pending.get(digest_of(state))
             if begun is None or begun.browser != digest_of(secret):
-                raise NotSignedIn(f"this sign-in is finished already, or was not begun in this browser; {AGAIN}")
+                raise NotSignedIn(
+                    f"this sign-in is finished already, or was not begun in this browser; {SIGN_IN_SUGGESTION}"
+                )
             del self._pending[digest_of(state)]
         if self._now_ns() >= begun.until_ns:
-            raise NotSignedIn(f"this sign-in has taken longer than {LIFE:g} s; {AGAIN}")
+            raise NotSignedIn(f"this sign-in has taken longer than {LIFE:g} s; {SIGN_IN_SUGGESTION}")
         return begun
 
     def _person(self, claims: Mapping[str, Any]) -> Person:

@@ -12,7 +12,7 @@ from teachpath.errors import NotSignedIn, UnusableSettings
 from teachpath.records import Capability, Subject, capabilities_of
 
 FORWARDED_USER: Final = "X-Forwarded-User"  # header of who somebody is
-EVERYBODY: Final = "*"  # in the settings: whoever comes through the proxy
+ALL_GROUPS: Final = "*"  # in the settings: whoever comes through the proxy
 HEADER: Final = re.compile(r"[a-z0-9-]{1,64}", re.ASCII | re.IGNORECASE)
 MAX_NAME_LENGTH: Final = 64  # characters of a name that a proxy gives
 MAX_SHOWN: Final = 8  # groups of somebody that a sentence names
@@ -59,7 +59,7 @@ class ProxyPeople:
             raise NotSignedIn(
                 f"the proxy tells groups ({self.header}) and no name; let it set {FORWARDED_USER} beside them"
             )
-        roles = roles_of(self._settings, (*groups, EVERYBODY))
+        roles = roles_of(self._settings, (*groups, ALL_GROUPS))
         return Subject(name, capabilities_of(roles), groups=groups)
 
     def way_out(self, subject: Subject, needed: Capability) -> str:

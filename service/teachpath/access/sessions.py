@@ -17,8 +17,10 @@ from teachpath.records import Person, Session, Subject, capabilities_of
 
 NS: Final = 10**9
 USE_INTERVAL_NS: Final = 10 * NS  # between two notes of the use of one session
-UNKNOWN: Final = "no one of this name and password is known here; try again, or ask whoever administers the station"
-ENDED: Final = "your session has ended; sign in again"
+UNKNOWN_PERSON_SENTENCE: Final = (
+    "no one of this name and password is known here; try again, or ask whoever administers the station"
+)
+SESSION_ENDED_SENTENCE: Final = "your session has ended; sign in again"
 
 
 class PeopleTable(Protocol):
@@ -108,7 +110,7 @@ class Sessions:
         self._attempts.begin(name, address)
         person = self._people.get(name)
         if not is_password(password, person.password_hash if person else None) or person is None:
-            raise NotSignedIn(UNKNOWN)
+            raise NotSignedIn(UNKNOWN_PERSON_SENTENCE)
         self._attempts.succeed(name, address)
         return self._begin(person)
 
@@ -144,12 +146,12 @@ class Sessions:
     def subject(self, secret: str) -> Subject:
         """Return who has a session; raises NotSignedIn."""
         if len(secret) > MAX_LENGTH:
-            raise NotSignedIn(ENDED)
+            raise NotSignedIn(SESSION_ENDED_SENTENCE)
         digest, now = digest_of(secret), self._now_ns()
         with self._lock:
             session = self._sessions.get(digest)
             if session is None or not self._holds(digest):
-                raise NotSignedIn(ENDED)
+                raise NotSignedIn(SESSION_ENDED_SENTENCE)
             if now - session.used_ns > USE_INTERVAL_NS:
                 self._sessions[digest] = session = replace(session, used_ns=now)
             return self._subject(self._people[session.person], session)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from enum import StrEnum
 from typing import Final
 
-from teachpath.access.access import STRANGER
+from teachpath.access.access import REFUSED_SUBJECT
 from teachpath.access.senders import sender_of
 from teachpath.access.settings import LimitSettings
 from teachpath.errors import TooManyRequests
@@ -85,6 +85,6 @@ class SubjectLimits:
 
 def subject_name(subject: Subject, address: str) -> str:
     """Return by which name the limits of a subject are counted: its own, else its address."""
-    if subject.name and subject is not STRANGER:
+    if subject.name and subject is not REFUSED_SUBJECT:
         return subject.name
     return f"address {sender_of(address) or 'unknown'}"

@@ -11,7 +11,7 @@ from fastapi.security import SecurityScopes
 from fastapi.security.base import SecurityBase
 from starlette.requests import HTTPConnection, Request
 
-from teachpath.access.access import STRANGER, Access
+from teachpath.access.access import REFUSED_SUBJECT, Access
 from teachpath.access.proxy_people import FORWARDED_USER, NOT_FORWARDED, Forwarded
 from teachpath.api.middleware import SAFE_METHODS
 from teachpath.api.session_cookie import read_cookie
@@ -81,7 +81,7 @@ def identify(connection: HTTPConnection, access: Access) -> Subject:
         session = _session(connection, access)
         return access.subject(authorization, session, _forwarded(connection, access))
     except NotSignedIn:
-        return STRANGER
+        return REFUSED_SUBJECT
 
 
 def _session(connection: HTTPConnection, access: Access) -> str:
@@ -121,7 +121,7 @@ DEMONSTRATE: Final = _needs(Capability.DEMONSTRATE)
 TEACH: Final = _needs(Capability.TEACH)
 OPERATE: Final = _needs(Capability.OPERATE)
 ADMINISTER: Final = _needs(Capability.ADMINISTER)
-OPEN: Final[Declaration] = [Depends(let_pass)]
+NO_CAPABILITY: Final[Declaration] = [Depends(let_pass)]
 
 
 async def subject_of(connection: HTTPConnection) -> Subject:

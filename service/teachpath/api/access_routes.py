@@ -14,8 +14,8 @@ from pydantic import Field
 
 from teachpath.access.access import Access
 from teachpath.access.tokens import new_token
-from teachpath.api.access import ADMINISTER, OPEN, Sender
-from teachpath.api.audit import CLAIMED
+from teachpath.api.access import ADMINISTER, NO_CAPABILITY, Sender
+from teachpath.api.audit import CLAIMED_NAME_ATTRIBUTE
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.session_cookie import clear_cookie, read_cookie, require_private_line, set_cookie
@@ -104,15 +104,15 @@ def access_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["access"])
     access, tokens, hashing = parts.access, parts.store.access_tokens, CapacityLimiter(MAX_HASHING)
 
-    @router.get("/identity", dependencies=OPEN)
+    @router.get("/identity", dependencies=NO_CAPABILITY)
     async def get_identity(sender: Sender) -> Identity:
         """Say who you are here, and what you may do."""
         return identity_of(access, sender)
 
-    @router.post("/session", responses=refusals(401, 507), dependencies=OPEN)
+    @router.post("/session", responses=refusals(401, 507), dependencies=NO_CAPABILITY)
     async def sign_in(wanted: Credentials, request: Request, response: Response) -> Identity:
         """Sign in with name and password; the answer sets the cookie of a session."""
-        request.scope[CLAIMED] = wanted.name
+        request.scope[CLAIMED_NAME_ATTRIBUTE] = wanted.name
         require_private_line(request)
         if access.mode == "none":
             raise UnusableInput(
@@ -130,7 +130,7 @@ def access_router(parts: Parts) -> APIRouter:
         set_cookie(request, response, secret, seconds=parts.settings.auth.session_length)
         return identity_of(access, subject)
 
-    @router.delete("/session", status_code=204, dependencies=OPEN)
+    @router.delete("/session", status_code=204, dependencies=NO_CAPABILITY)
     def sign_out(request: Request, response: Response) -> None:
         """Sign out: the session and every WebSocket that was opened in it end."""
         if session := read_cookie(request):

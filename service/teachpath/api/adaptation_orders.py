@@ -11,7 +11,7 @@ from fastapi import Response
 from teachpath.api.answers import json_response
 from teachpath.io.documents import from_document
 from teachpath.io.store.store import Store
-from teachpath.jobs.idempotency import ORDERED
+from teachpath.jobs.idempotency import ORDER_KEY
 from teachpath.records import Array, Job, LearnedPath, Version
 
 if TYPE_CHECKING:  # computed in another process
@@ -69,7 +69,7 @@ def order_of(saved: Version, ordered: dict[str, Any], adapted: AdaptedPath, base
     """
     spread, shown = tuple(map(float, adapted.spread)), (adapted.demonstrations, adapted.places)
     findings = Findings(base, spread, *shown, adapted.extrapolates, adapted.note)
-    return {"path": saved.path, "version": saved.number, ORDERED: ordered, FINDINGS: asdict(findings)}
+    return {"path": saved.path, "version": saved.number, ORDER_KEY: ordered, FINDINGS: asdict(findings)}
 
 
 def answer_of(store: Store, job: Job) -> Response:

@@ -22,7 +22,7 @@ from teachpath.editing import check_editable
 from teachpath.errors import Outdated, UnusableInput
 from teachpath.io.store.store import Store
 from teachpath.io.store.versions import Edit
-from teachpath.jobs.idempotency import ORDERED, begun_by
+from teachpath.jobs.idempotency import ORDER_KEY, begun_by
 from teachpath.learning.adaptation.adapted_course import AdaptationModel
 from teachpath.learning.adaptation.target import Target
 from teachpath.records import Array, Job, LearnedPath, ObjectPose, Scene, Version
@@ -54,7 +54,7 @@ class NewAdaptation(Body):
     author: str = Field("", max_length=80, pattern=LINE_PATTERN, description="who asked for it")
 
 
-UNCHANGED: Final[dict[str, Any]] = {
+UNCHANGED_ANSWER: Final[dict[str, Any]] = {
     "model": model_of(Adaptation),
     "description": "It begins and ends there already: no new version.",
 }
@@ -69,7 +69,7 @@ def adaptations_router(parts: Parts) -> APIRouter:
         "/paths/{path}/adaptations",
         status_code=201,
         response_model=model_of(Adaptation),
-        responses={200: UNCHANGED | located(200, "the version")[200]}
+        responses={200: UNCHANGED_ANSWER | located(200, "the version")[200]}
         | located(201, "the version")
         | refusals(409, 507),
         dependencies=TEACH,
@@ -88,7 +88,7 @@ def adaptations_router(parts: Parts) -> APIRouter:
         ordered = {"path": path, "adaptation": wanted.model_dump(mode="json")}
 
         def earlier_job() -> Job | None:
-            return begun_by(store, task, "plan", {ORDERED: ordered}, submitter, key)
+            return begun_by(store, task, "plan", {ORDER_KEY: ordered}, submitter, key)
 
         if known := earlier_job():
             return answer_of(store, known)

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Response
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from teachpath.access.access import STRANGER
+from teachpath.access.access import REFUSED_SUBJECT
 from teachpath.access.audit import Audit
 from teachpath.access.proxy_people import listed
 from teachpath.api.access import ADMINISTER, SUBJECT, signed
@@ -21,10 +21,12 @@ from teachpath.api.parts import Parts
 from teachpath.api.request_numbers import ROUTINE
 from teachpath.records import AuditEntry, Capability, Subject
 
-CLAIMED: Final = "teachpath.claimed"  # where the scope of a request has whom somebody says to be who signs in
-NOTED: Final = "teachpath.noted"  # where it has what is written in the place of a body that holds a password
+CLAIMED_NAME_ATTRIBUTE: Final = (
+    "teachpath.claimed"  # where the scope of a request has whom somebody says to be who signs in
+)
+NOTED_ATTRIBUTE: Final = "teachpath.noted"  # where it has what is written in the place of a body that holds a password
 SECRET: Final = ("/session", "/people")  # parts of paths whose bodies hold passwords
-REFUSED: Final = (401, 403, 408, 413, 429)  # answers that are written whatever was asked for
+REFUSAL_CODES: Final = (401, 403, 408, 413, 429)  # answers that are written whatever was asked for
 MAX_BODY: Final = 1000  # bytes of an order that are written
 MAX_KNOWN: Final = 10_000  # people of a proxy of whom it is known what was written; beyond, the oldest is forgotten
 
@@ -63,7 +65,7 @@ class _Arrivals:
         self._known: OrderedDict[str, Subject] = OrderedDict()
 
     def note(self, subject: Subject | None, source: str) -> None:
-        if not subject or not subject.name or subject is STRANGER or self._known.get(subject.name) == subject:
+        if not subject or not subject.name or subject is REFUSED_SUBJECT or self._known.get(subject.name) == subject:
             return
         self._known[subject.name] = subject
         while len(self._known) > MAX_KNOWN:
@@ -107,14 +109,14 @@ class _Request:
     @property
     def is_to_be_written(self) -> bool:
         method = self._scope.get("method", "GET")
-        return self._status in REFUSED or (
+        return self._status in REFUSAL_CODES or (
             method not in SAFE_METHODS and self._status > 0 and not self._scope["path"].endswith(ROUTINE)
         )
 
     @property
     def who(self) -> str:
         subject: Subject | None = self._scope.get(SUBJECT)
-        if claimed := self._scope.get(CLAIMED):
+        if claimed := self._scope.get(CLAIMED_NAME_ATTRIBUTE):
             return f"who signs in as {claimed}"
         return signed(subject, self._label) if subject else self._label
 
@@ -126,7 +128,7 @@ class _Request:
     @property
     def action(self) -> str:
         words = f"{self._scope.get('method', 'WS')} {self._scope['path']}"
-        noted = self._scope.get(NOTED) or self._body[:MAX_BODY].decode(errors="replace")
+        noted = self._scope.get(NOTED_ATTRIBUTE) or self._body[:MAX_BODY].decode(errors="replace")
         return f"{words} {noted}".strip()
 
     @property

@@ -9,7 +9,7 @@ import ssl
 from fastapi import APIRouter, Request, Response
 
 from teachpath.access.loopback import host_of, is_loopback
-from teachpath.api.access import OPEN
+from teachpath.api.access import NO_CAPABILITY
 from teachpath.api.parts import Parts
 from teachpath.api.view import HEADERS, HTML
 from teachpath.errors import NotFound
@@ -37,19 +37,19 @@ def authority_router(parts: Parts) -> APIRouter:
             host = next((name for name in parts.settings.web.hosts if not is_loopback(name)), host)
         return f"http://{host}:{parts.settings.web.port}/authority"
 
-    @router.get("/authority", dependencies=OPEN)
+    @router.get("/authority", dependencies=NO_CAPABILITY)
     def show_steps(request: Request) -> Response:
         """Show what a device does to trust this station, with the fingerprint to compare."""
         digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(authority())).digest().hex(":").upper()
         page = (web_files() / PAGE).read_text().replace(FINGERPRINT, digest).replace(ADDRESS, address(request))
         return Response(page, headers=HEADERS, media_type=HTML)
 
-    @router.get("/authority.crt", dependencies=OPEN)
+    @router.get("/authority.crt", dependencies=NO_CAPABILITY)
     def download_authority() -> Response:
         """Return the authority's certificate, which a device is to trust."""
         return Response(authority(), headers=HEADERS, media_type="application/x-x509-ca-cert")
 
-    @router.get("/authority/address.svg", dependencies=OPEN)
+    @router.get("/authority/address.svg", dependencies=NO_CAPABILITY)
     def show_code(request: Request) -> Response:
         """Draw the address of the steps as a QR code."""
         import segno

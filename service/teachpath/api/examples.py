@@ -86,7 +86,7 @@ VALUES: Final[dict[str, Any]] = {
     "who": "ada",
 }
 MOMENT: Final = 1_764_510_000_000_000_000  # [ns since the Unix epoch]
-NEVER: Final = ("archived_ns", "discarded_ns", "revoked_ns")
+UNSET_TIMES: Final = ("archived_ns", "discarded_ns", "revoked_ns")
 
 
 def add_examples(schemas: dict[str, Schema]) -> None:
@@ -136,7 +136,7 @@ def _scalar(kind: Schema, field: str) -> Any:
     known = VALUES.get(field)
     match kind.get("type"):
         case "integer" if field.endswith("_ns"):
-            return 0 if field in NEVER else MOMENT
+            return 0 if field in UNSET_TIMES else MOMENT
         case "integer":
             return int(kind.get("minimum", 1))
         case "number":

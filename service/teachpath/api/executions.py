@@ -11,7 +11,7 @@ from fastapi import APIRouter, Header, Query, Response
 from fastapi.responses import FileResponse
 from pydantic import AfterValidator, Field
 
-from teachpath.api.access import MAX_HEADER_LENGTH, OPEN, OPERATE, VIEW, Sender, Who, signed
+from teachpath.api.access import MAX_HEADER_LENGTH, NO_CAPABILITY, OPERATE, VIEW, Sender, Who, signed
 from teachpath.api.answers import MCAP, files, located, model_of
 from teachpath.api.names import TrackerName, TrackerNameOrEmpty
 from teachpath.api.pages import WantedPage
@@ -235,7 +235,7 @@ def stops_router(parts: Parts) -> APIRouter:
     router, executions = APIRouter(tags=["executions"]), parts.executions
     threads = CapacityLimiter(MAX_STOPS)  # of stops alone, so that a stop waits for no other request
 
-    @router.post("/executions/{execution}/stop", dependencies=OPEN)
+    @router.post("/executions/{execution}/stop", dependencies=NO_CAPABILITY)
     async def stop_execution(execution: str, sender: Sender, lease: AnyToken = "", label: AnyLabel = "") -> Execution:
         """Stop and end an execution; everybody may do it, and more than once.
 
@@ -247,7 +247,7 @@ def stops_router(parts: Parts) -> APIRouter:
         who = signed(sender, label)
         return await run_sync(partial(executions.stop_one, execution, lease=lease, who=who), limiter=threads)
 
-    @router.post("/stop", dependencies=OPEN)
+    @router.post("/stop", dependencies=NO_CAPABILITY)
     async def stop_arm(sender: Sender, lease: AnyToken = "", label: AnyLabel = "") -> ExecutorStatus:
         """Stop whatever moves the arm, on its path, as the stop of an execution does; everybody may do it."""
         who = signed(sender, label)

@@ -15,7 +15,7 @@ from starlette.requests import ClientDisconnect
 from starlette.routing import Match
 
 from teachpath.api.access import require_access
-from teachpath.api.problems import FAULT, HTTP_KINDS, KINDS, REFUSED, Fault, printable, refuse
+from teachpath.api.problems import FAULT_KIND, HTTP_KINDS, KINDS, REFUSED_KIND, Fault, printable, refuse
 from teachpath.api.strict_requests import EXTRA_FIELD, unknown_field
 from teachpath.errors import (
     Conflict,
@@ -113,7 +113,7 @@ def answer_errors(app: FastAPI) -> None:
                 await require_access(request)
             except (NotSignedIn, NotAllowed) as refusal:
                 return await answer(request, refusal)
-        kind = HTTP_KINDS.get(error.status_code, REFUSED)
+        kind = HTTP_KINDS.get(error.status_code, REFUSED_KIND)
         return refuse(error.status_code, _sentence(request, headers, error), kind, headers=headers)
 
     @app.exception_handler(UnicodeEncodeError)
@@ -138,7 +138,7 @@ def answer_errors(app: FastAPI) -> None:
     async def confess(_: Request, error: Exception) -> Response:
         """Answer 500 for an error that nobody thought of."""
         # the server logs the error itself, with its traceback
-        return refuse(500, f"this is a fault of teachpath, please report it: {error!r}", FAULT)
+        return refuse(500, f"this is a fault of teachpath, please report it: {error!r}", FAULT_KIND)
 
 
 def _evidence(error: TeachpathError) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Final
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import PlainTextResponse, RedirectResponse
 
-from teachpath.api.access import OPEN
+from teachpath.api.access import NO_CAPABILITY
 from teachpath.api.page_files import PageFiles
 
 HEADERS: Final = {
@@ -47,12 +47,12 @@ def help_router(folder: Path) -> APIRouter:
     router = APIRouter(include_in_schema=False)
     files, root = PageFiles(HEADERS), folder.resolve()
 
-    @router.get("/help", dependencies=OPEN)
+    @router.get("/help", dependencies=NO_CAPABILITY)
     def begin(request: Request) -> Response:
         """Send the reader to the first page."""
         return RedirectResponse(f"{request.scope.get('root_path', '')}/help/index.html")
 
-    @router.get("/help/{name:path}", dependencies=OPEN)
+    @router.get("/help/{name:path}", dependencies=NO_CAPABILITY)
     def document(request: Request, name: str) -> Response:
         """Answer with a file of the site; 404 where it has none of that name, or was not built."""
         if not root.is_dir():

@@ -13,7 +13,7 @@ from teachpath.api.problems import refuse
 
 API: Final = "/api/"
 # What a device needs before it trusts the certificate, the files of that page, and probes of this machine.
-READABLE: Final = ("/authority", "/web/", "/api/v1/health/live", "/api/v1/health/ready")
+HTTP_PATHS: Final = ("/authority", "/web/", "/api/v1/health/live", "/api/v1/health/ready")
 
 
 class HttpsOnly:
@@ -43,5 +43,5 @@ def _is_allowed(scope: Scope) -> bool:
         return False
     path: str = scope["path"]
     if scope["method"] in SAFE_METHODS:
-        return path.startswith(READABLE)
+        return path.startswith(HTTP_PATHS)
     return is_stop(scope)

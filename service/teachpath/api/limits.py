@@ -13,7 +13,7 @@ from teachpath.access.subject_limits import Kind, SubjectLimits, subject_name
 from teachpath.api.access import identify
 from teachpath.api.faults import answer_to
 from teachpath.api.middleware import UPLOADS, is_stop
-from teachpath.api.problems import REFUSED, refuse
+from teachpath.api.problems import REFUSED_KIND, refuse
 from teachpath.errors import TooManyRequests
 
 KEPT_SHARE: Final = 0.1  # of the connections, which requests and WebSockets leave to those that come: to stops
@@ -47,7 +47,7 @@ class LimitSubjects:
                 f"{self._open} requests and WebSockets are open, and the rest of web.max_connections is kept for those "
                 "that stop the arm; close some pages or programs, or raise the setting"
             )
-            await refuse(503, sentence, REFUSED, headers={"Retry-After": "1"})(scope, receive, send)
+            await refuse(503, sentence, REFUSED_KIND, headers={"Retry-After": "1"})(scope, receive, send)
             return
         self._open += 1
         try:

@@ -19,8 +19,8 @@ from teachpath.api.live_messages import (
 )
 from teachpath.api.schemas import REFERENCE, Schema, schemas_of
 
-ABOUT: Final = """What a station says by itself, over WebSockets at its own host and port: `ws://HOST:PORT` and the
-address of a channel, `wss://` where it is reached by https. Metres, radians, seconds; quaternions w, x, y, z;
+DESCRIPTION: Final = """What a station says by itself, over WebSockets at its own host and port: `ws://HOST:PORT` and
+the address of a channel, `wss://` where it is reached by https. Metres, radians, seconds; quaternions w, x, y, z;
 times ending in `_ns` are nanoseconds since the Unix epoch. A connection shows the header Authorization, or cookie, of a
 request. A query parameter or field that a channel does not know is refused with the nearest known name: code 1008, or
 `refused`."""
@@ -69,7 +69,7 @@ def live_description() -> dict[str, Any]:
     }
     return {
         "asyncapi": "3.0.0",
-        "info": {"title": "teachpath, live", "version": __version__, "description": ABOUT},
+        "info": {"title": "teachpath, live", "version": __version__, "description": DESCRIPTION},
         "defaultContentType": "application/json",
         "channels": channels,
         "operations": {

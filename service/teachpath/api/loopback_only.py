@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from teachpath.access.loopback import WAY_OUT, authority_of, host_of, is_loopback
 from teachpath.api.problems import refuse
 
-FORWARDED: Final = ("forwarded", "x-forwarded-", "x-real-ip", "via")  # beginnings of the headers of proxies
+PROXY_HEADERS: Final = ("forwarded", "x-forwarded-", "x-real-ip", "via")  # beginnings of the headers of proxies
 
 
 class LoopbackOnly:
@@ -40,5 +40,5 @@ def _fault(scope: Scope) -> str:
     for origin in headers.getlist("origin"):
         if not is_loopback(host_of(authority_of(origin))):
             return f"a page of {origin[:80]!r} asks"
-    passed = next((name for name in headers if name.startswith(FORWARDED)), "")
+    passed = next((name for name in headers if name.startswith(PROXY_HEADERS)), "")
     return f"a proxy has passed this on (header {passed})" if passed else ""

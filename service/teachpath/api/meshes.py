@@ -15,7 +15,7 @@ from teachpath.api.problems import refusals
 from teachpath.api.scenes import Point
 from teachpath.api.strict_requests import Body
 from teachpath.api.work import submitter_of
-from teachpath.io.meshes import KNOWN, MAX_PIECES
+from teachpath.io.meshes import FILE_SUFFIXES, MAX_PIECES
 from teachpath.offline.import_job import UPLOAD
 
 
@@ -40,7 +40,9 @@ def meshes_router(parts: Parts) -> APIRouter:
         name: Annotated[
             str,
             Query(
-                description=f"of the file; its end says what it is: {', '.join(KNOWN)}", min_length=1, max_length=200
+                description=f"of the file; its end says what it is: {', '.join(FILE_SUFFIXES)}",
+                min_length=1,
+                max_length=200,
             ),
         ],
         max_pieces: Annotated[

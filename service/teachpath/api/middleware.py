@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from teachpath.api.problems import REFUSED, refuse
+from teachpath.api.problems import REFUSED_KIND, refuse
 from teachpath.api.sockets import same_origin
 from teachpath.web.settings import WebSettings
 
@@ -137,4 +137,4 @@ def _too_large(count: str, limit: int) -> str:
 
 
 def _refuse(status: int, sentence: str) -> Response:
-    return refuse(status, sentence, REFUSED)
+    return refuse(status, sentence, REFUSED_KIND)

@@ -15,7 +15,7 @@ from fastapi import Request, Response
 from teachpath.live.preview.page_modules import imported_modules
 
 LEAST_COMPRESSED: Final = 1000  # bytes; a shorter file gains nothing
-NONE: Final[Mapping[str, str]] = {}
+NO_SOURCES: Final[Mapping[str, str]] = {}
 # Comments that have their lines to themselves; line numbers stay.
 COMMENTS: Final = re.compile(rb"^[ \t]*(?:/\*\*(?:(?!\*/).)*\*/|//[^\n]*)$", re.MULTILINE | re.DOTALL)
 PRELOAD: Final = "<!-- preload -->"  # where the page announces its modules
@@ -48,7 +48,7 @@ class PageFiles:
         media_type: str,
         *,
         entry: str = "",
-        headers: Mapping[str, str] = NONE,
+        headers: Mapping[str, str] = NO_SOURCES,
         bare: bool = False,
     ) -> Response:
         """Return a file as an answer, or 304 where the browser has it; raises FileNotFoundError.

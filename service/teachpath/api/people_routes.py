@@ -14,7 +14,7 @@ from pydantic import Field
 from teachpath.access.passwords import hash_password
 from teachpath.api.access import ADMINISTER, Sender
 from teachpath.api.access_routes import MAX_HASHING
-from teachpath.api.audit import NOTED
+from teachpath.api.audit import NOTED_ATTRIBUTE
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.session_cookie import require_private_line
@@ -72,7 +72,7 @@ def people_router(parts: Parts) -> APIRouter:
     @router.post("/people", status_code=201, responses=refusals(409, 507), dependencies=ADMINISTER)
     async def add_person(new: NewPerson, request: Request) -> ListedPerson:
         """Add somebody who may sign in; of the password a hash is kept."""
-        request.scope[NOTED] = f"{new.name}, {' '.join(new.roles)}"
+        request.scope[NOTED_ATTRIBUTE] = f"{new.name}, {' '.join(new.roles)}"
         require_private_line(request)
         if access.provider:
             raise Conflict(f"people are known by {access.provider.name} here (auth.mode is oidc): add them there")

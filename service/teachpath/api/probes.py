@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fastapi import APIRouter
 
 from teachpath import __version__
-from teachpath.api.access import OPEN
+from teachpath.api.access import NO_CAPABILITY
 from teachpath.api.parts import Parts
 from teachpath.errors import TeachpathError, Unreachable
 from teachpath.robot.processes import ProcessState
@@ -29,12 +29,12 @@ def probes_router(parts: Parts) -> APIRouter:
     """Return the routes of the probes."""
     router = APIRouter(tags=["station"])
 
-    @router.get("/health/live", dependencies=OPEN)
+    @router.get("/health/live", dependencies=NO_CAPABILITY)
     async def get_liveness() -> Probe:
         """Say that the service answers; it does even while every other request waits."""
         return Probe(__version__)
 
-    @router.get("/health/ready", dependencies=OPEN)
+    @router.get("/health/ready", dependencies=NO_CAPABILITY)
     def get_readiness() -> Probe:
         """Say that the station is ready to record, learn and move the arm; 503 with the reasons while it is not."""
         if reasons := list(_reasons(parts)):

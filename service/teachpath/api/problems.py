@@ -19,7 +19,7 @@ KINDS: Final = {
     for name, kind in vars(errors).items()
     if inspect.isclass(kind) and issubclass(kind, errors.TeachpathError)
 }
-UNNAMED: Final = "about:blank"  # type of a refusal that says no more than its status
+UNNAMED_TYPE: Final = "about:blank"  # type of a refusal that says no more than its status
 TYPES: Final = {name: f"urn:teachpath:error:{name}" for name in KINDS}
 
 # Kinds of refusals that no error of the tree is: of HTTP alone, of the service as a whole, and of its faults.
@@ -30,9 +30,9 @@ HTTP_KINDS: Final = {
     408: "Request Timeout",
     413: "Request Entity Too Large",
 }
-REFUSED: Final = "Refused"
-FAULT: Final = "InternalError"
-WORDS: Final = (*TYPES, *HTTP_KINDS.values(), REFUSED, FAULT)
+REFUSED_KIND: Final = "Refused"
+FAULT_KIND: Final = "InternalError"
+WORDS: Final = (*TYPES, *HTTP_KINDS.values(), REFUSED_KIND, FAULT_KIND)
 
 # What a status says of any operation.
 MEANINGS: Final = {
@@ -62,7 +62,7 @@ class Refusal(BaseModel):
 
     type: str = Field(
         description="the kind of the error as a URI; about:blank where there is no more to say than the status",
-        json_schema_extra={"enum": [UNNAMED, *TYPES.values()]},
+        json_schema_extra={"enum": [UNNAMED_TYPE, *TYPES.values()]},
     )
     title: str = Field(description="the kind of the error in words, always the same")
     status: int = Field(description="of HTTP")
@@ -95,7 +95,12 @@ def refuse(
     """
     title = re.split("[;.]", KINDS[kind].__doc__ or "")[0] if kind in KINDS else HTTPStatus(status).phrase
     refusal = Refusal(
-        type=TYPES.get(kind, UNNAMED), title=title, status=status, detail=printable(sentence), error=kind, **evidence
+        type=TYPES.get(kind, UNNAMED_TYPE),
+        title=title,
+        status=status,
+        detail=printable(sentence),
+        error=kind,
+        **evidence,
     )
     document = refusal.model_dump(mode="json", exclude_defaults=True)
     return JSONResponse(document, status, headers, media_type=PROBLEM)

@@ -12,9 +12,9 @@ from fastapi import APIRouter, Request, Response
 from pydantic import Field
 
 from teachpath.access.provider_sign_in import LIFE, Answer, ProviderSignIn
-from teachpath.api.access import OPEN
+from teachpath.api.access import NO_CAPABILITY
 from teachpath.api.access_routes import Identity, identity_of
-from teachpath.api.audit import CLAIMED
+from teachpath.api.audit import CLAIMED_NAME_ATTRIBUTE
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.session_cookie import SIGN_IN, clear_cookie, read_cookie, require_private_line, set_cookie
@@ -56,7 +56,7 @@ def provider_router(parts: Parts) -> APIRouter:
     router = APIRouter(tags=["access"])
     access, asking = parts.access, CapacityLimiter(MAX_ASKING)
 
-    @router.post("/session/authorization", responses=refusals(503), dependencies=OPEN)
+    @router.post("/session/authorization", responses=refusals(503), dependencies=NO_CAPABILITY)
     async def begin_sign_in(page: Page, request: Request, response: Response) -> SignInAddress:
         """Begin to sign in at the provider: the answer says where, and sets a cookie by which the browser is known."""
         provider = _provider(access.provider, request)
@@ -68,14 +68,14 @@ def provider_router(parts: Parts) -> APIRouter:
         set_cookie(request, response, secret, seconds=LIFE, kind=SIGN_IN)
         return SignInAddress(address)
 
-    @router.post("/session/code", responses=refusals(401, 409, 503, 507), dependencies=OPEN)
+    @router.post("/session/code", responses=refusals(401, 409, 503, 507), dependencies=NO_CAPABILITY)
     async def finish_sign_in(answer: ProviderAnswer, request: Request, response: Response) -> Identity:
         """Sign in with the answer of the provider; the answer sets the cookie of a session."""
         provider = _provider(access.provider, request)
         given = Answer(answer.code, answer.state, answer.iss)
         finish = partial(provider.finish, given, read_cookie(request, SIGN_IN))
         secret, subject = await run_sync(finish, limiter=asking)
-        request.scope[CLAIMED] = subject.name
+        request.scope[CLAIMED_NAME_ATTRIBUTE] = subject.name
         if former := read_cookie(request):
             await run_sync(access.sessions.sign_out, former)
         clear_cookie(request, response, SIGN_IN)

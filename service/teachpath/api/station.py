@@ -9,7 +9,7 @@ from fastapi.routing import APIRoute
 from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from teachpath import __version__
-from teachpath.api.access import OPEN, VIEW
+from teachpath.api.access import NO_CAPABILITY, VIEW
 from teachpath.api.access_routes import access_router
 from teachpath.api.adaptations import adaptations_router
 from teachpath.api.assessments import assessments_router
@@ -53,7 +53,7 @@ from teachpath.api.work import jobs_router, results_router
 from teachpath.web.server import possible_connections
 
 PREFIX: Final = "/api/v1"
-UNSPECIFIED: Final = {"0.0.0.0", "::", ""}  # where to listen, and no name of a station
+UNSPECIFIED_HOSTS: Final = {"0.0.0.0", "::", ""}  # where to listen, and no name of a station
 
 DESCRIPTION = """Show a task a few times; teachpath finds the different ways it was done, learns a path for each, proves
 that the arm can follow it, and moves the arm. Metres, radians, seconds; quaternions w, x, y, z; times ending in `_ns`
@@ -99,7 +99,7 @@ def _add_guards(app: FastAPI, parts: Parts) -> None:
     """Add what may refuse a request; the last one that is added comes first."""
     # Another name for this address is how a foreign page would reach a loopback service (DNS rebinding).
     web = parts.settings.web
-    hosts = ["127.0.0.1", "localhost", "[::1]", *({web.host} - UNSPECIFIED), *web.hosts]
+    hosts = ["127.0.0.1", "localhost", "[::1]", *({web.host} - UNSPECIFIED_HOSTS), *web.hosts]
     app.add_middleware(CompressedDocuments)
     app.add_middleware(HeadRequests)
     app.add_middleware(RevocableSockets, access=parts.access)
@@ -122,12 +122,12 @@ def description_router(app: FastAPI) -> APIRouter:
     """Return the routes of the descriptions: of the REST API in OpenAPI, of the WebSockets in AsyncAPI."""
     router = APIRouter(include_in_schema=False)
 
-    @router.get("/openapi.json", dependencies=OPEN)
+    @router.get("/openapi.json", dependencies=NO_CAPABILITY)
     def get_description() -> dict[str, Any]:
         """Return the description of this API in OpenAPI."""
         return app.openapi()
 
-    @router.get("/asyncapi.json", dependencies=OPEN)
+    @router.get("/asyncapi.json", dependencies=NO_CAPABILITY)
     def get_live_description() -> dict[str, Any]:
         """Return the description of the WebSockets in AsyncAPI."""
         return live_description()

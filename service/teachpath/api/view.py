@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request, Response, WebSocket
 from fastapi.responses import PlainTextResponse
 
 from teachpath.api import sockets
-from teachpath.api.access import OPEN, VIEW
+from teachpath.api.access import NO_CAPABILITY, VIEW
 from teachpath.api.help import help_router
 from teachpath.api.page_files import PageFiles
 from teachpath.live.preview.asset_paths import VIEWER_STYLES, help_files, viewer_files, web_files
@@ -43,7 +43,7 @@ MEDIA: Final = {
     ".svg": "image/svg+xml",
     ".txt": "text/plain; charset=utf-8",
 }
-_VENDORED: Final = {
+_VENDOR_FILES: Final = {
     "meshcat.min.js": ("dist/main.min.js", ".js"),
     "meshcat.min.js.LICENSE.txt": ("dist/main.min.js.LICENSE.txt", ".txt"),
     "meshcat.LICENSE.txt": ("LICENSE", ".txt"),
@@ -65,22 +65,22 @@ def view_router(preview: Preview) -> APIRouter:
         sender = files if is_thread else parts
         return sender.answer(request, path, MEDIA[suffix], bare=bare) if path.is_file() else _missing(path.name)
 
-    @router.get("/", dependencies=OPEN)
+    @router.get("/", dependencies=NO_CAPABILITY)
     def page(request: Request) -> Response:
         """Return the operator's page."""
         return files.answer(request, root / "index.html", HTML, entry="page.js")
 
-    @router.get("/docs", dependencies=OPEN)
+    @router.get("/docs", dependencies=NO_CAPABILITY)
     def docs(request: Request) -> Response:
         """Return the page that shows the API."""
         return files.answer(request, root / "docs.html", HTML)
 
-    @router.get("/favicon.ico", dependencies=OPEN)
+    @router.get("/favicon.ico", dependencies=NO_CAPABILITY)
     def icon(request: Request) -> Response:
         """Return the icon that browsers ask for."""
         return answer(request, root / "icon.svg", ".svg")
 
-    @router.get("/web/{name:path}", dependencies=OPEN)
+    @router.get("/web/{name:path}", dependencies=NO_CAPABILITY)
     def module(request: Request, name: str) -> Response:
         """Return a file of the page, and nothing from outside its folder."""
         try:
@@ -92,10 +92,10 @@ def view_router(preview: Preview) -> APIRouter:
         is_ours = path.suffix == ".js" and not path.is_relative_to(root.resolve() / "vendor")
         return answer(request, path, path.suffix, bare=is_ours)
 
-    @router.get("/vendor/{name}", dependencies=OPEN)
+    @router.get("/vendor/{name}", dependencies=NO_CAPABILITY)
     def vendored(request: Request, name: str) -> Response:
         """Return a library that the page loads."""
-        place, suffix = _VENDORED.get(name, ("", ""))
+        place, suffix = _VENDOR_FILES.get(name, ("", ""))
         return answer(request, viewer / place, suffix) if place else _missing(name)
 
     @router.websocket("/api/v1/view", dependencies=VIEW)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from teachpath.offline.import_job import ImportOrder
     from teachpath.records import Demonstration, Task
 
-REJECTED = 3  # exit status: all are stored, and some are rejected
+REJECTED_EXIT_STATUS = 3  # exit status: all are stored, and some are rejected
 FIRST_SECOND = 1.0  # [s] of a motion that a dry run shows
 MAX_SHOWN = 5  # points of it
 # That are imported of a folder.
@@ -284,4 +284,4 @@ def _summarize(files: Sequence[Sequence[Demonstration]], refused: int, where: st
 def _status(files: Sequence[Sequence[Demonstration]], refused: bool) -> int:
     """Return the exit status of an import."""
     rejected = any(made.verdict == "reject" for file in files for made in file)
-    return 1 if refused else REJECTED if rejected else 0
+    return 1 if refused else REJECTED_EXIT_STATUS if rejected else 0

@@ -73,7 +73,7 @@ def list_(config: Config = None, json_: Json = False) -> None:
 @app.command("revoke")
 def revoke(name: Name, config: Config = None, json_: Json = False) -> None:
     """Take a login back; one of this user's own programs gets a new password."""
-    from teachpath.io.bus_logins import LOCAL, revoke_login, station_logins
+    from teachpath.io.bus_logins import LOCAL_ROLES, revoke_login, station_logins
     from teachpath_proto.sessions import is_tls
 
     settings = settings_of(config, None)
@@ -84,6 +84,6 @@ def revoke(name: Name, config: Config = None, json_: Json = False) -> None:
         raise NotFound(f"there is no login {name!r}; known: {known}")
     revoke_login(bus, name)
     note(settings, f"revoke login {name}")
-    renewed = name in LOCAL and not is_tls(bus.endpoint)
+    renewed = name in LOCAL_ROLES and not is_tls(bus.endpoint)
     said = f"login {name} is {'given a new password' if renewed else 'revoked'}; {RESTART}"
     print_answer({"name": name, "revoked": not renewed}, said, json_=json_)

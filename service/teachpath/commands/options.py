@@ -29,8 +29,10 @@ Url = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, in the form of the REST API.")]
-LOCAL = "http://127.0.0.1:8765"
-MISSING = re.compile("there is no (task|demonstration|run|path|plan|job|execution) [^;]*$")  # as a station says
+LOCAL_ADDRESS = "http://127.0.0.1:8765"
+NOT_FOUND_PATTERN = re.compile(
+    "there is no (task|demonstration|run|path|plan|job|execution) [^;]*$"
+)  # as a station says
 LISTED_BY = {"demonstration": " TASK"}
 
 
@@ -111,7 +113,7 @@ def connected(url: str, *, operator: str = "") -> Iterator[Station]:
         try:
             yield station
         except Refused as refused:
-            kind = MISSING.match(str(refused))
+            kind = NOT_FOUND_PATTERN.match(str(refused))
             if refused.status != 404 or kind is None:
                 raise
             raise NotFound(f"{refused}; list them with: teachpath {kind[1]}s{LISTED_BY.get(kind[1], '')}") from None
@@ -132,7 +134,7 @@ def address() -> str:
     running = running_services()
     if len(running) > 1:
         raise UnusableInput(f"several services run: {', '.join(running)}; say which with --url")
-    return running[0] if running else LOCAL
+    return running[0] if running else LOCAL_ADDRESS
 
 
 def stop_addresses() -> list[str]:
@@ -142,7 +144,7 @@ def stop_addresses() -> list[str]:
     try:
         return [address()]
     except TeachpathError:
-        return running_services() or [LOCAL]
+        return running_services() or [LOCAL_ADDRESS]
 
 
 def web_address(settings: Settings) -> str:

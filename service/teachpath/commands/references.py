@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 MAX_NAMED: Final = 5  # ids that a sentence names
 WHOLE_ID: Final = re.compile(r"[a-z]+-[0-9a-f]{12}(-\d+)?")
-LAST: Final = "last"
+LAST_WORD: Final = "last"
 
 
 class _Listed(Protocol):
@@ -52,7 +52,7 @@ def find_path(station: Station, words: str) -> str:
     task = id_or_words(task)
     if slash or any(path.task == task for path in paths):
         return _of_newest_run(paths, task, cluster).id
-    if words == LAST and paths:
+    if words == LAST_WORD and paths:
         return _of_newest_run(paths, paths[0].task, "").id
     return pick("path", words, paths).id
 
@@ -87,7 +87,7 @@ def pick(kind: str, words: str, entries: Sequence[Entry]) -> Entry:
         NotFound: there is none.
         UnusableInput: several begin so.
     """
-    if words == LAST and entries:
+    if words == LAST_WORD and entries:
         return entries[0]
     exact = [entry for entry in entries if words in (entry.id, _rest(entry.id))]
     found = exact or [e for e in entries if words and (e.id.startswith(words) or _rest(e.id).startswith(words))]

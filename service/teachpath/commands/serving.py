@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 SWITCH_INTERVAL: Final = 0.0005
 SIGNALS = frozenset({signal.SIGINT, signal.SIGTERM})
 # What executor, simulated arm and processes of jobs have loaded when they begin; the last is what they take for theirs.
-PARTS: Final = ("teachpath.config", "teachpath.executor.loop", "teachpath.simulator.loop")
+PROCESS_MODULES: Final = ("teachpath.config", "teachpath.executor.loop", "teachpath.simulator.loop")
 PRELOADED: Final = (
     "teachpath.offline.learning_job",
     "teachpath.learning.relearn",
@@ -58,7 +58,7 @@ def serving(settings: Settings) -> Iterator[Station]:
     try:
         # Their matrices are small: threads of linear algebra would spend their time on waiting for each other.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        start_process_server((*PARTS, *PRELOADED))  # which loads them while this process loads what follows
+        start_process_server((*PROCESS_MODULES, *PRELOADED))  # which loads them while this process loads what follows
         from teachpath.app import Station
         from teachpath.io.running_services import announced
         from teachpath.web.server import web_server

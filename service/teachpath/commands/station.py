@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from teachpath.instructions import Instructions
     from teachpath.logs import LogSettings
 
-PARTS = {Role.EXECUTOR: "executor", Role.ROBOT: "simulator"}  # names of the processes in the log
+PROCESS_NAMES = {Role.EXECUTOR: "executor", Role.ROBOT: "simulator"}  # names of the processes in the log
 
 Attached = Annotated[bool, typer.Option("--attached", hidden=True)]
 
@@ -138,7 +138,7 @@ def _instructions(config: Path | None, attached: bool, role: Role) -> Instructio
     from teachpath.io.bus_logins import local_login
     from teachpath.logs import log_to_stderr
 
-    log_to_stderr(part=PARTS[role], attached=attached)
+    log_to_stderr(part=PROCESS_NAMES[role], attached=attached)
     if attached:
         return from_instructions(sys.stdin.readline())
     settings = with_arm(load(config))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 app: typer.Typer = typer.Typer(help="https for page and REST: make or renew the certificate.", no_args_is_help=True)
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
-UNSPECIFIED = ("0.0.0.0", "::", "")
+UNSPECIFIED_HOSTS = ("0.0.0.0", "::", "")
 
 
 @app.callback()
@@ -92,7 +92,7 @@ def _hosts(settings: WebSettings, further: list[str]) -> list[str]:
     import socket
 
     here = [socket.gethostname().lower()]
-    bound = [] if settings.host in UNSPECIFIED else [settings.host]
+    bound = [] if settings.host in UNSPECIFIED_HOSTS else [settings.host]
     hosts = [*LOOPBACK, *here, *bound, *settings.hosts, *further]
     for host in hosts:
         if not _is_host(host):

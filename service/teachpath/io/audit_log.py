@@ -27,9 +27,9 @@ BEGINNING: Final = "0" * 64  # hash before the first entry
 MAX_TEXT_LENGTH: Final = 2000  # characters of one field; an order that is longer is cut
 MAX_LINE_LENGTH: Final = 131072  # bytes; four texts whose every character is escaped
 BLOCK: Final = 65536  # bytes that are read at a time
-ITSELF: Final = "the audit log"  # who writes of what it finds at its end
-BREAK: Final = "found broken"
-TORN: Final = "found torn"
+LOG_SUBJECT: Final = "the audit log"  # who writes of what it finds at its end
+BROKEN_CHAIN_ACTION: Final = "found broken"
+TORN_END_ACTION: Final = "found torn"
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,18 +138,22 @@ class AuditLog:
         last = next(_lines_before(log, size), None)
         if last is not None and not last[1].endswith(b"\n"):
             os.ftruncate(log, last[0])
-            found.append(Happening(ITSELF, "", TORN, f"{len(last[1])} bytes that were not written whole are removed"))
+            found.append(
+                Happening(
+                    LOG_SUBJECT, "", TORN_END_ACTION, f"{len(last[1])} bytes that were not written whole are removed"
+                )
+            )
             last = next(_lines_before(log, last[0]), None)
         entry, newest = _entry(last[1]) if last else None, _read_head(head)
         if last is not None and entry is None:
-            found.append(Happening(ITSELF, "", BREAK, "the entry before cannot be read"))
+            found.append(Happening(LOG_SUBJECT, "", BROKEN_CHAIN_ACTION, "the entry before cannot be read"))
         if last is not None and newest is None:
-            found.append(Happening(ITSELF, "", BREAK, f"{HEAD} was missing or unreadable"))
+            found.append(Happening(LOG_SUBJECT, "", BROKEN_CHAIN_ACTION, f"{HEAD} was missing or unreadable"))
         number, hashed = (entry.number, entry.hash) if entry else (0, BEGINNING)
         for known in (newest, self._newest):  # the head, and what this process remembers where both were made anew
             if known is not None and (number < known[0] or (number == known[0] and hashed != known[1])):
                 said = f"entries up to {known[0]} ({known[1]}) were written, and are not there"
-                found.append(Happening(ITSELF, "", BREAK, said))
+                found.append(Happening(LOG_SUBJECT, "", BROKEN_CHAIN_ACTION, said))
                 break
         return number, hashed, found
 
@@ -188,7 +192,7 @@ def _fault(line: bytes, entry: AuditEntry | None, number: int, previous: str) ->
     happening = Happening(entry.who, entry.source, entry.action, entry.answer)
     if _line(entry.number, entry.at_ns, happening, entry.previous)[0].encode() != line:
         return "it was changed"
-    return entry.answer if (entry.who, entry.action) == (ITSELF, BREAK) else ""
+    return entry.answer if (entry.who, entry.action) == (LOG_SUBJECT, BROKEN_CHAIN_ACTION) else ""
 
 
 def _entry(line: bytes) -> AuditEntry | None:

@@ -33,8 +33,8 @@ MESSAGES: Final[dict[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
 }
 
 # Everybody may stop the arm. `{only}` is the tracker or robot that a login is held to, else `*`.
-STOP: Final = {"put": ("executor/stop",), "ask": ("executor/stop",)}
-LOOK: Final = (
+STOP_KEYS: Final = {"put": ("executor/stop",), "ask": ("executor/stop",)}
+VIEWER_KEYS: Final = (
     "executor/status",
     "executor/journal",
     "robot/*/state",
@@ -45,10 +45,10 @@ LOOK: Final = (
 )
 # Zenoh's advanced publishers keep a cache and tell their newest number on keys below their own.
 CACHE_KEYS: Final = "@adv/**"
-ALL: Final = ("**", f"**/{CACHE_KEYS}")
+ALL_KEYS: Final = ("**", f"**/{CACHE_KEYS}")
 GRANTS: Final[dict[Role, dict[str, tuple[str, ...]]]] = {
     # Only a router asks what these two may do: without one, the service is the session that enforces the table.
-    Role.SERVICE: {**dict.fromkeys(MESSAGES, ALL), "put": ("**",), "serve": ("**",)},
+    Role.SERVICE: {**dict.fromkeys(MESSAGES, ALL_KEYS), "put": ("**",), "serve": ("**",)},
     Role.ROUTER: {},
     Role.EXECUTOR: {
         "put": ("executor/status", "executor/journal", "robot/*/setpoint"),
@@ -59,28 +59,28 @@ GRANTS: Final[dict[Role, dict[str, tuple[str, ...]]]] = {
         "watch": ("alive/robot/*",),
     },
     Role.ROBOT: {
-        "put": ("robot/{only}/state", *STOP["put"]),
+        "put": ("robot/{only}/state", *STOP_KEYS["put"]),
         "serve": ("robot/{only}/reset",),
         "subscribe": ("robot/{only}/setpoint", "executor/status"),
-        "ask": STOP["ask"],
+        "ask": STOP_KEYS["ask"],
         "announce": ("alive/robot/{only}",),
     },
     Role.TRACKER: {
-        "put": ("trackers/{only}/samples", "scenes/*/object", *STOP["put"]),
+        "put": ("trackers/{only}/samples", "scenes/*/object", *STOP_KEYS["put"]),
         "subscribe": ("trackers/{only}/feedback",),
-        "ask": ("recorder/*", *STOP["ask"]),
+        "ask": ("recorder/*", *STOP_KEYS["ask"]),
         "announce": ("alive/tracker/{only}",),
     },
     Role.OPERATOR: {
-        "put": ("scenes/*/object", *STOP["put"]),
-        "subscribe": LOOK,
-        "ask": ("executor/command", "executor/lease", "recorder/*", *STOP["ask"]),
+        "put": ("scenes/*/object", *STOP_KEYS["put"]),
+        "subscribe": VIEWER_KEYS,
+        "ask": ("executor/command", "executor/lease", "recorder/*", *STOP_KEYS["ask"]),
         "watch": ("alive/**",),
     },
     Role.VIEWER: {
-        "put": STOP["put"],
-        "subscribe": LOOK,
-        "ask": ("recorder/status", *STOP["ask"]),
+        "put": STOP_KEYS["put"],
+        "subscribe": VIEWER_KEYS,
+        "ask": ("recorder/status", *STOP_KEYS["ask"]),
         "watch": ("alive/**",),
     },
 }

@@ -10,7 +10,7 @@ from teachpath.io.bus_settings import BusSettings
 from teachpath_proto.sessions import TLS, is_tls
 
 # Keys that the station sets itself -> where a file says the same instead.
-OWN: Final = {
+STATION_KEYS: Final = {
     "mode": "it is the setting bus.mode",
     "namespace": "every key begins with the setting bus.prefix",
     "listen": "the station listens at the setting bus.endpoint",
@@ -35,7 +35,7 @@ def read_bus_config(bus: BusSettings) -> dict[str, Any]:
     if not bus.config:
         return {}
     document = _read(Path(bus.config))
-    own = OWN | (OF_ACCESS_CONTROL if bus.access_control else {})
+    own = STATION_KEYS | (OF_ACCESS_CONTROL if bus.access_control else {})
     own |= (OF_A_CLIENT if bus.mode == "client" else {}) | (OF_TLS if is_tls(bus.endpoint) else {})
     for key, instead in own.items():
         if _has(document, key.split("/")):

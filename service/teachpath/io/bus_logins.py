@@ -22,7 +22,7 @@ from teachpath_proto.sessions import is_tls
 
 PASSWORD_BYTES: Final = 24
 # Roles whose logins lie in the file for this user's programs; the executor's is given to its process alone.
-LOCAL: Final = (Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
+LOCAL_ROLES: Final = (Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
 
 
 def prepare_access(bus: BusSettings) -> BusAccess | None:
@@ -47,7 +47,9 @@ def prepare_access(bus: BusSettings) -> BusAccess | None:
     path = logins_path(bus.endpoint)
     with _refusing(path):
         kept = [login for login in read_logins(path) if login.password]
-        missing = [Login(role.value, new_password(), role) for role in LOCAL if role not in {k.user for k in kept}]
+        missing = [
+            Login(role.value, new_password(), role) for role in LOCAL_ROLES if role not in {k.user for k in kept}
+        ]
         if missing or not path.exists():
             write_logins(path, [*kept, *missing])
     executor = Login(Role.EXECUTOR.value, new_password(), Role.EXECUTOR)
@@ -70,7 +72,7 @@ def _certified(bus: BusSettings) -> BusAccess:
     expiries = {login.user: certificates.expiry(login) for login in (own, *others)}
     certificates.refuse_expired((login for login in (own, *others) if login.user in set(Role)), datetime.now(UTC))
     with _refusing(path):
-        write_logins(path, [login for login in others if login.user in LOCAL and login.key])
+        write_logins(path, [login for login in others if login.user in LOCAL_ROLES and login.key])
     return BusAccess(own, tuple(others), expiries)
 
 

@@ -26,12 +26,12 @@ from teachpath.io.private_files import refuse_shared, write_private
 from teachpath_proto.logins import GENERATION_MARK, Login, Role
 
 AUTHORITY: Final = "authority"
-ISSUED: Final = "issued.json"  # newest generation of every name that has or had a certificate
+ISSUED_FILE: Final = "issued.json"  # newest generation of every name that has or had a certificate
 AUTHORITY_LIFE: Final = timedelta(days=3650)
 LIFE: Final = timedelta(days=365)
 CLOCK_DIFFERENCE: Final = timedelta(hours=1)  # by which another machine's clock may be behind
 LOOPBACK: Final = ("127.0.0.1", "localhost")
-MAKE: Final = "teachpath station certificates"
+CREATE_COMMAND: Final = "teachpath station certificates"
 
 
 def prepare_authority(folder: Path, now: datetime) -> bool:
@@ -48,7 +48,7 @@ def prepare_authority(folder: Path, now: datetime) -> bool:
     builder = builder.add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
     builder = builder.add_extension(key_usage(signs=True), critical=True)
     write_pair(folder, AUTHORITY, builder.sign(key, hashes.SHA256()), key)
-    _write_file(folder / ISSUED, "{}")
+    _write_file(folder / ISSUED_FILE, "{}")
     return True
 
 
@@ -99,7 +99,7 @@ def read_login(folder: Path, name: str) -> Login:
             _field(certificate, NameOID.DN_QUALIFIER),
         )
     except ValueError as error:
-        raise UnusableSettings(f"{pem} names no role of a station ({error}); make another: {MAKE}") from None
+        raise UnusableSettings(f"{pem} names no role of a station ({error}); make another: {CREATE_COMMAND}") from None
     private = _read_key(key) if key.exists() else ""
     user, generation = _name_and_generation(certificate)
     authority = _read(folder / f"{AUTHORITY}.pem")
@@ -131,7 +131,7 @@ def refuse_expired(logins: Iterable[Login], now: datetime) -> None:
     for login in logins:
         if expiry(login) <= now:
             raise UnusableSettings(
-                f"the certificate of {login.user} ended on {expiry(login):%Y-%m-%d}; renew it with: {MAKE}"
+                f"the certificate of {login.user} ended on {expiry(login):%Y-%m-%d}; renew it with: {CREATE_COMMAND}"
             )
 
 
@@ -142,12 +142,12 @@ def _authority(folder: Path, now: datetime) -> tuple[x509.Certificate, ec.Ellipt
     except ValueError:
         key = None
     if not isinstance(key, ec.EllipticCurvePrivateKey):
-        raise UnusableSettings(f"{path} is no key that {MAKE} made; name another folder in bus.certificates")
+        raise UnusableSettings(f"{path} is no key that {CREATE_COMMAND} made; name another folder in bus.certificates")
     certificate = _certificate(folder / f"{AUTHORITY}.pem")
     if (end := certificate.not_valid_after_utc) - now <= RENEWAL:
         raise UnusableSettings(
             f"the authority in {folder} ends on {end:%Y-%m-%d} and signs no further: move the folder away, then make "
-            f"all certificates anew with: {MAKE}"
+            f"all certificates anew with: {CREATE_COMMAND}"
         )
     return certificate, key
 
@@ -169,7 +169,7 @@ def certificate_builder(
 
 def _next_generation(folder: Path, name: str) -> int:
     """Return the generation of the next certificate of a name, and note it; raises UnusableSettings."""
-    path = folder / ISSUED
+    path = folder / ISSUED_FILE
     try:
         issued: dict[str, int] | None = {one: int(number) for one, number in json.loads(path.read_text()).items()}
     except FileNotFoundError:
@@ -248,13 +248,14 @@ def _certificate(path: Path) -> x509.Certificate:
     try:
         return x509.load_pem_x509_certificate(_read(path).encode())
     except ValueError as error:
-        raise UnusableSettings(f"{path} is no certificate in PEM ({error}); make another: {MAKE}") from None
+        raise UnusableSettings(f"{path} is no certificate in PEM ({error}); make another: {CREATE_COMMAND}") from None
 
 
 def _read_key(path: Path) -> str:
     content = _read(path)
     consequence = (
-        f"whoever has read it can take its holder's place; remove it and {path.stem}.pem and make another: {MAKE}"
+        f"whoever has read it can take its holder's place; remove it and {path.stem}.pem and make another: "
+        f"{CREATE_COMMAND}"
     )
     refuse_shared(f"the private key {path}", path.stat(), consequence)
     return content
@@ -264,6 +265,8 @@ def _read(path: Path) -> str:
     try:
         return path.read_text()
     except FileNotFoundError:
-        raise UnusableSettings(f"there is no {path}; make the certificates of the station with: {MAKE}") from None
+        raise UnusableSettings(
+            f"there is no {path}; make the certificates of the station with: {CREATE_COMMAND}"
+        ) from None
     except (OSError, UnicodeDecodeError) as error:
         raise UnusableSettings(f"cannot read {path}: {error}; it has to be this user's, in PEM") from None

@@ -22,7 +22,7 @@ from teachpath.io.private_files import refuse_shared
 from teachpath.records import CodeGrant
 
 TIMEOUT: Final = 5.0  # [s] for each step of an answer of the provider
-KEEP: Final = 3600.0  # [s] for which discovery and keys are kept
+KEY_SET_LIFETIME: Final = 3600.0  # [s] for which discovery and keys are kept
 LEEWAY: Final = 60  # [s] by which the clocks of provider and station may differ
 MAX_SECRET: Final = 4096  # bytes of the file of the client's secret
 # Signatures by the provider's private key alone: with `none`, or a secret that both have, others could sign.
@@ -78,15 +78,15 @@ class IdentityProvider:
         self._client, self._now = client, now
         self._secret = _read_secret(client.secret_file)
         self._verify = _authorities(client.authorities)
-        self._metadata: tuple[float, dict[str, Any]] = (-KEEP, {})
-        self._keys: tuple[float, KeySet | None] = (-KEEP, None)
+        self._metadata: tuple[float, dict[str, Any]] = (-KEY_SET_LIFETIME, {})
+        self._keys: tuple[float, KeySet | None] = (-KEY_SET_LIFETIME, None)
         self._lock = threading.Lock()
 
     def metadata(self) -> Mapping[str, Any]:
         """Return what the provider says of itself (OpenID Connect Discovery); raises Unreachable."""
         with self._lock:
             read, known = self._metadata
-        if known and self._now() - read < KEEP:
+        if known and self._now() - read < KEY_SET_LIFETIME:
             return known
         found = self._get(self._client.issuer.rstrip("/") + "/.well-known/openid-configuration")
         if found.get("issuer") != self._client.issuer:
@@ -136,7 +136,7 @@ class IdentityProvider:
         """Return the claims of a token that the provider has signed; a key that is not known is looked for once."""
         with self._lock:
             read, keys = self._keys
-        if keys is not None and self._now() - read < KEEP:
+        if keys is not None and self._now() - read < KEY_SET_LIFETIME:
             try:
                 return jwt.decode(token, keys, ALGORITHMS).claims
             except InvalidKeyIdError:

@@ -16,9 +16,9 @@ from teachpath.errors import UnusableInput
 from teachpath.io import mesh_pieces
 from teachpath.records import Vector
 
-LARGEST: Final = 50_000_000  # bytes
+MAX_FILE_SIZE: Final = 50_000_000  # bytes
 HEADER: Final = 84  # bytes before the triangles of a binary STL: a comment and their number
-KNOWN: Final = tuple(sorted((".obj", ".stl", *mesh_pieces.SUFFIXES)))
+FILE_SUFFIXES: Final = tuple(sorted((".obj", ".stl", *mesh_pieces.SUFFIXES)))
 MAX_PIECES: Final = 32
 TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -51,8 +51,8 @@ def read_mesh(file: Path, name: str = "", max_pieces: int = 1) -> Mesh:
     if not 1 <= max_pieces <= MAX_PIECES:
         raise UnusableInput(f"mesh {name} in {max_pieces} pieces; 1 to {MAX_PIECES} are possible")
     try:
-        if file.stat().st_size > LARGEST:
-            raise UnusableInput(f"mesh {name} has {file.stat().st_size} bytes, limit {LARGEST}; simplify it")
+        if file.stat().st_size > MAX_FILE_SIZE:
+            raise UnusableInput(f"mesh {name} has {file.stat().st_size} bytes, limit {MAX_FILE_SIZE}; simplify it")
         content = file.read_bytes()
     except OSError as error:
         raise UnusableInput(f"cannot read the mesh {name}: {error.strerror}") from None
@@ -113,8 +113,8 @@ def _corners(content: bytes, name: str) -> NDArray[np.float64]:
 
 def _suffix(name: str) -> str:
     kind = Path(name).suffix.lower()
-    if kind not in KNOWN:
-        raise UnusableInput(f"mesh {name} ends in {kind!r}; known: {', '.join(KNOWN)}")
+    if kind not in FILE_SUFFIXES:
+        raise UnusableInput(f"mesh {name} ends in {kind!r}; known: {', '.join(FILE_SUFFIXES)}")
     return kind
 
 

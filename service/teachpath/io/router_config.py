@@ -9,7 +9,7 @@ from typing import Final
 from teachpath.io.bus_access import access_rules
 from teachpath.io.bus_settings import BusSettings
 from teachpath_proto.logins import Login, Role
-from teachpath_proto.sessions import ALONE, TLS
+from teachpath_proto.sessions import DISCOVERY_OFF, TLS
 
 HEADER: Final = """\
 // A Zenoh router for a station whose programs run on several machines; `teachpath station router` writes this file:
@@ -36,7 +36,7 @@ def router_config(bus: BusSettings, logins: Sequence[Login]) -> str:
     values: dict[str, object] = {
         "mode": "router",
         "listen/endpoints": [bus.endpoint],
-        **ALONE,
+        **DISCOVERY_OFF,
         TLS: tls,
         "access_control": access_rules(listed, bus.prefix),
     }

@@ -12,7 +12,7 @@ from teachpath.records import Array
 
 JOINT_COUNTS = (6, 7)  # that an arm may have
 ON_PATH = "on_path"
-LARGEST = 256 * 1024 * 1024  # bytes
+MAX_FILE_SIZE = 256 * 1024 * 1024  # bytes
 
 
 def read_setpoints(content: bytes, name: str) -> tuple[Array, Array, Array | None]:
@@ -24,8 +24,8 @@ def read_setpoints(content: bytes, name: str) -> tuple[Array, Array, Array | Non
     Raises:
         UnusableRecording: with the line that is wrong.
     """
-    if len(content) > LARGEST:
-        raise UnusableRecording(f"{name}: {len(content)} bytes are over the limit of {LARGEST}; split the file")
+    if len(content) > MAX_FILE_SIZE:
+        raise UnusableRecording(f"{name}: {len(content)} bytes are over the limit of {MAX_FILE_SIZE}; split the file")
     try:
         rows = list(csv.reader(io.StringIO(content.decode("utf-8-sig"))))
     except (UnicodeDecodeError, csv.Error) as error:

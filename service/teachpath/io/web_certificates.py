@@ -27,7 +27,7 @@ AUTHORITY: Final = "authority"
 STATION: Final = "station"
 AUTHORITY_LIFE: Final = timedelta(days=3650)
 LIFE: Final = timedelta(days=397)  # browsers trust none that holds longer
-MAKE: Final = "teachpath tls init"
+CREATE_COMMAND: Final = "teachpath tls init"
 # What the authority may vouch for beside the names it is given: hosts that are on no public network.
 PRIVATE_NAMES: Final = ("localhost", "local", "lan", "internal", "home.arpa")
 PRIVATE_NETWORKS: Final = (
@@ -136,7 +136,7 @@ def _read(path: Path) -> x509.Certificate:
         return x509.load_pem_x509_certificate(path.read_bytes())
     except (OSError, ValueError) as error:
         raise UnusableSettings(
-            f"{path} is no certificate in PEM that can be read ({error}); make it with: {MAKE}"
+            f"{path} is no certificate in PEM that can be read ({error}); make it with: {CREATE_COMMAND}"
         ) from None
 
 
@@ -146,11 +146,13 @@ def _read_key(path: Path) -> ec.EllipticCurvePrivateKey:
         key = serialization.load_pem_private_key(content, password=None)
     except (OSError, ValueError, TypeError) as error:
         raise UnusableSettings(
-            f"the private key {path} cannot be used ({error}); move the folder away, then: {MAKE}"
+            f"the private key {path} cannot be used ({error}); move the folder away, then: {CREATE_COMMAND}"
         ) from None
     refuse_shared(
-        f"the private key {path}", status, f"whoever has read it can pass for the station; remove it, then: {MAKE}"
+        f"the private key {path}",
+        status,
+        f"whoever has read it can pass for the station; remove it, then: {CREATE_COMMAND}",
     )
     if not isinstance(key, ec.EllipticCurvePrivateKey):
-        raise UnusableSettings(f"{path} is no key that {MAKE} made; name another folder in web.tls")
+        raise UnusableSettings(f"{path} is no key that {CREATE_COMMAND} made; name another folder in web.tls")
     return key

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from teachpath.errors import UnusableSettings
 from teachpath.jobs.executors import Limits, Reports, Work
-from teachpath.jobs.settings import LOCAL
+from teachpath.jobs.settings import LOCAL_EXECUTOR
 
 if TYPE_CHECKING:  # of an extra
     from distributed import Client, Future
@@ -35,7 +35,7 @@ def open_cluster(executor: str, progress: Reports) -> Cluster | None:
     Raises:
         UnusableSettings: what speaks to it is not installed.
     """
-    if executor == LOCAL:
+    if executor == LOCAL_EXECUTOR:
         return None
     if find_spec("distributed") is None:
         raise UnusableSettings("jobs on a Dask cluster need distributed: pip install 'teachpath[dask]'")

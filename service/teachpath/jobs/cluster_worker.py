@@ -21,11 +21,19 @@ from teachpath.jobs.executors import Limits, Work
 from teachpath.jobs.local_executor import LocalExecutor
 from teachpath.process_server import start_process_server
 
-COMPARED: Final = ("teachpath", "distributed", "numpy", "scipy", "numba", "hmmlearn", "ruckig", "mujoco-core")
-LOADED: Final = ("teachpath.offline.learning_job", "teachpath.learning.relearn", "teachpath.motion.planning.plan")
+COMPARED_PACKAGES: Final = ("teachpath", "distributed", "numpy", "scipy", "numba", "hmmlearn", "ruckig", "mujoco-core")
+PRELOADED_MODULES: Final = (
+    "teachpath.offline.learning_job",
+    "teachpath.learning.relearn",
+    "teachpath.motion.planning.plan",
+)
 
 LOOK_INTERVAL: Final = 1.0  # [s] between two looks at whether somebody still waits for the outcome
-GONE: Final = (Status.closing, Status.closed, Status.failed)  # states of a worker whose scheduler is lost, too
+CLOSED_STATUSES: Final = (
+    Status.closing,
+    Status.closed,
+    Status.failed,
+)  # of a worker whose scheduler is lost, too
 
 _lock: Final = threading.Lock()
 _running: Final[dict[str, LocalExecutor]] = {}
@@ -47,7 +55,7 @@ class EventReports:
 def versions() -> dict[str, str]:
     """Return the versions that service and worker have to share."""
     found = {"Python": ".".join(platform.python_version_tuple()[:2])}
-    for name in COMPARED:
+    for name in COMPARED_PACKAGES:
         try:
             found[name] = version(name)
         except PackageNotFoundError:
@@ -62,7 +70,7 @@ def examine() -> dict[str, str]:
 
 def work_in_limits(order: str, work: Work, inputs: tuple[Any, ...], limits: Limits, topic: str) -> Any:
     """Do the middle step of a job for an order of a service, while that is there; raises as `LocalExecutor.work`."""
-    start_process_server(LOADED)
+    start_process_server(PRELOADED_MODULES)
     worker, ended = get_worker(), threading.Event()
 
     def end_with_service() -> None:
@@ -90,7 +98,7 @@ def work_in_limits(order: str, work: Work, inputs: tuple[Any, ...], limits: Limi
 def _is_wanted(worker: Worker, order: str) -> bool:
     """Whether the scheduler is there, and waits for an order: it lets go of those of a service that has gone."""
     task = worker.state.tasks.get(order)
-    return worker.status not in GONE and task is not None and task.state in ("executing", "long-running")
+    return worker.status not in CLOSED_STATUSES and task is not None and task.state in ("executing", "long-running")
 
 
 def cancel(order: str) -> None:

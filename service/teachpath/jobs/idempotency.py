@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from teachpath.io.store.store import Store
 
 DIGITS: Final = 16
-CHOSEN: Final = frozenset({"upload"})  # by the station: another one when the order comes again
-ORDERED: Final = "ordered"  # holds what the sender ordered, of a request to which the station has added more
+STATION_FIELDS: Final = frozenset({"upload"})  # by the station: another one when the order comes again
+ORDER_KEY: Final = "ordered"  # holds what the sender ordered, of a request to which the station has added more
 
 
 def job_id(task: str, kind: str, submitter: str, idempotency_key: str) -> str:
@@ -37,7 +37,7 @@ def begun_by(
 
 
 def _require_same(job: Job, request: dict[str, Any]) -> Job:
-    if _ordered(job.request.get(ORDERED, job.request)) != _ordered(request.get(ORDERED, request)):
+    if _ordered(job.request.get(ORDER_KEY, job.request)) != _ordered(request.get(ORDER_KEY, request)):
         raise Conflict(
             f"this Idempotency-Key has begun job {job.id}, by another order; send a new key with each order, and the "
             "same one only with the same order again"
@@ -48,5 +48,5 @@ def _require_same(job: Job, request: dict[str, Any]) -> Job:
 def _ordered(value: Any) -> Any:
     """Return what the sender said of an order, in the form that it has in the database."""
     if isinstance(value, dict):
-        return {name: _ordered(each) for name, each in value.items() if name not in CHOSEN}
+        return {name: _ordered(each) for name, each in value.items() if name not in STATION_FIELDS}
     return [_ordered(each) for each in value] if isinstance(value, (list, tuple)) else value

@@ -10,13 +10,13 @@ from annotated_types import Ge, Gt, Le
 
 from teachpath.errors import UnusableSettings
 
-LOCAL: Final = "local"
+LOCAL_EXECUTOR: Final = "local"
 CLUSTER: Final = re.compile(r"dask(\+tls)?://(\[[0-9a-fA-F:]+\]|[\w.-]+):(\d{1,5})", re.ASCII)
 
 
 def check_executor(executor: str) -> None:
     """Raise UnusableSettings when a setting `jobs.executor` is no place where jobs can be done."""
-    if executor != LOCAL and not CLUSTER.fullmatch(executor):
+    if executor != LOCAL_EXECUTOR and not CLUSTER.fullmatch(executor):
         raise UnusableSettings(
             f"setting jobs.executor is {executor!r}; it should be local, or dask://HOST:PORT of a Dask scheduler (over "
             "TLS dask+tls://HOST:PORT)"
@@ -28,7 +28,7 @@ class JobSettings:
     """How background work is done."""
 
     # where learning and planning jobs are done: local, or dask://HOST:PORT of a Dask scheduler (over TLS dask+tls://)
-    executor: str = LOCAL
+    executor: str = LOCAL_EXECUTOR
     # of them, jobs on a cluster at a time
     cluster_jobs: Annotated[int, Ge(1), Le(1000)] = 4
     # how often a job is begun anew after its process died

@@ -15,7 +15,7 @@ from typing import Any, Final
 Document = dict[str, Any]
 Key = tuple[str, str]
 RESYNC_TOPIC: Final = "all"  # of the first event, and of the one after an overflow: read everything anew
-PRIVATE: Final = frozenset({"access_tokens", "people", "sessions"})  # the id of a session's row is its secret's hash
+PRIVATE_TOPICS: Final = frozenset({"access_tokens", "people", "sessions"})  # a session's id is its secret's hash
 MAX_PENDING_CHANGES: Final = 256  # changed resources that wait for one subscriber
 
 
@@ -97,7 +97,7 @@ class EventHub:
 
     def publish_change(self, topic: str, key: str, status: Document | None = None) -> None:
         """Publish that a resource has changed, and how it stands; of who signs in, nobody hears."""
-        if topic not in PRIVATE:
+        if topic not in PRIVATE_TOPICS:
             self._publish((topic, key), {"status": status} if status else {})
 
     def publish_state(self, topic: str, key: str, now: Document | None) -> None:

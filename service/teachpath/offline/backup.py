@@ -29,8 +29,8 @@ from teachpath.offline.lock import StationLock
 
 MANIFEST: Final = "manifest.json"
 EXECUTIONS: Final = "executions"
-PARTS: Final = (RECORDINGS, EXECUTIONS, TRANSFERS)
-ASIDE: Final = "aside"
+FILE_FOLDERS: Final = (RECORDINGS, EXECUTIONS, TRANSFERS)
+REPLACED_FOLDER: Final = "aside"
 Progress = Callable[[float, str], None]
 
 
@@ -97,7 +97,7 @@ def restore(source: Path, settings: StoreSettings, *, replace: bool = False) -> 
     listed = _verified(source)
     data = Path(settings.data_dir)
     with StationLock(data):
-        former = [data / name for name in (*PARTS, *_databases(data)) if (data / name).exists()]
+        former = [data / name for name in (*FILE_FOLDERS, *_databases(data)) if (data / name).exists()]
         if former and not replace:
             raise Conflict(
                 f"{data} holds data already ({', '.join(path.name for path in former)}); name another folder with "
@@ -110,7 +110,10 @@ def restore(source: Path, settings: StoreSettings, *, replace: bool = False) -> 
                 shutil.copyfile(source / name, part / name)
             _sync(part)
             aside = _set_aside(former, data) if former else None
-            for name in (*PARTS, DATABASE):  # the database last: before it, there is nothing that a service would read
+            for name in (
+                *FILE_FOLDERS,
+                DATABASE,
+            ):  # the database last: without it a service reads nothing
                 if (part / name).exists():
                     (part / name).rename(data / name)
             part.rmdir()
@@ -175,12 +178,12 @@ def _verified(source: Path) -> dict[str, dict[str, Any]]:
 
 
 def _databases(data: Path) -> list[str]:
-    return [file.name for file in sorted(data.glob(f"{DATABASE}*")) if f".{ASIDE}" not in file.name]
+    return [file.name for file in sorted(data.glob(f"{DATABASE}*")) if f".{REPLACED_FOLDER}" not in file.name]
 
 
 def _set_aside(former: list[Path], data: Path) -> Path:
     number = 1
-    while (aside := data / f"{ASIDE}-{number}").exists():
+    while (aside := data / f"{REPLACED_FOLDER}-{number}").exists():
         number += 1
     aside.mkdir()
     for path in former:

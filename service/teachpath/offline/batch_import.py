@@ -18,7 +18,7 @@ from teachpath.io.documents import decode, encode
 from teachpath.io.private_files import write_private
 from teachpath.io.store.recordings import RECORDINGS
 from teachpath.io.store.store import Store
-from teachpath.offline.import_job import PREPARED, UPLOAD, ImportOrder, PreparedImport, prepare_import
+from teachpath.offline.import_job import PREPARED_FOLDER, UPLOAD, ImportOrder, PreparedImport, prepare_import
 from teachpath.offline.staging import STAGING, begin_session, locked_staging
 from teachpath.records import Demonstration, Task
 
@@ -143,7 +143,7 @@ def _prepared(file: Path, digest: str, order: ImportOrder, call: Call) -> FileOu
 
 
 def _store_all(store: Store, staging: Path, order: ImportOrder, outcomes: Sequence[FileOutcome]) -> list[FileOutcome]:
-    batch = [(outcome.made, staging / str(n) / PREPARED / RECORDINGS) for n, outcome in enumerate(outcomes)]
+    batch = [(outcome.made, staging / str(n) / PREPARED_FOLDER / RECORDINGS) for n, outcome in enumerate(outcomes)]
     task = Task(order.task, order.scene.name, outcomes[0].made[0].calibration.name, 0, order.object_at_grasp)
     try:
         stored = iter(store.take_over(task, batch))

@@ -21,11 +21,13 @@ from teachpath.offline.lock import StationLock
 from teachpath.offline.object_faults import check_objects
 from teachpath.offline.row_faults import check_rows
 from teachpath.offline.staging import AbandonedImport, abandoned_imports
-from teachpath.offline.torn_recordings import SALVAGED, set_aside
+from teachpath.offline.torn_recordings import SALVAGED_SUFFIX, set_aside
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Scene
 
-ABANDONED = "import the same files again, and it goes on; or remove it: teachpath prune --older-than 0"
+ABANDONED_IMPORT_SUGGESTION = (
+    "import the same files again, and it goes on; or remove it: teachpath prune --older-than 0"
+)
 
 
 def examine(
@@ -89,7 +91,7 @@ def _check_imports(examination: Examination) -> None:
     for each in abandoned_imports(examination.data_dir):
         name = each.folder.relative_to(examination.data_dir).as_posix()
         repair = partial(_clear, each) if each.is_stored else None
-        examination.report(FaultKind.ABANDONED, name, each.fault, repair, advice=ABANDONED)
+        examination.report(FaultKind.ABANDONED, name, each.fault, repair, advice=ABANDONED_IMPORT_SUGGESTION)
 
 
 def _clear(each: AbandonedImport) -> Repair:
@@ -117,4 +119,4 @@ def _mend_motion(store: Store, part: Path) -> Repair:
     try:
         return Repair(f"made {store.motions.mend(part).name} of what is whole of it")
     except UnusableRecording as error:
-        return Repair(f"{error}; kept as {set_aside(part, SALVAGED).name}")
+        return Repair(f"{error}; kept as {set_aside(part, SALVAGED_SUFFIX).name}")

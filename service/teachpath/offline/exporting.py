@@ -21,7 +21,7 @@ from teachpath.records import Demonstration, Trajectory
 DATASETS = ("lerobot", "lerobot-2.1")
 FORMATS = ("csv", "mcap", *DATASETS, "trajectory", "archive")
 SUFFIXES = {"csv": ".csv", "mcap": ".mcap", "trajectory": "-trajectory.csv"}
-PART = ".part"
+PART_SUFFIX = ".part"
 Progress = Callable[[float, str], None]
 
 
@@ -114,7 +114,7 @@ def _whole(target: Path, write: Callable[[Path], object]) -> Path:
     """Write to a place beside `target` and rename it; nothing is left of a failure."""
     if target.exists():
         raise Conflict(f"{target} is there already; move it away, or name another folder")
-    part = target.with_name(f".{target.name}.{os.getpid()}{PART}")
+    part = target.with_name(f".{target.name}.{os.getpid()}{PART_SUFFIX}")
     try:
         write(part)
         part.rename(target)

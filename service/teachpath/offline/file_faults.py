@@ -11,7 +11,7 @@ from teachpath.offline.examination import Examination, Repair
 from teachpath.offline.findings import FaultKind
 from teachpath.offline.recording_checks import Inspection
 from teachpath.offline.row_faults import rewrite
-from teachpath.offline.torn_recordings import SALVAGED, repair, scene_of, set_aside
+from teachpath.offline.torn_recordings import SALVAGED_SUFFIX, repair, scene_of, set_aside
 from teachpath.records import Demonstration, Scene, Task
 
 COPY: Final = ".copy"
@@ -58,7 +58,7 @@ def check_torn_files(examination: Examination) -> None:
         owner = examination.rows.get(key)
         if inspection.header is None:
             fault = f"nothing could be read ({inspection.fault})"
-            examination.report(FaultKind.TORN, place, fault, partial(_set_aside, inspection, SALVAGED))
+            examination.report(FaultKind.TORN, place, fault, partial(_set_aside, inspection, SALVAGED_SUFFIX))
         elif owner is not None:
             fault = f"its demonstration {owner.task} {owner.number} ({owner.id}) is there already"
             examination.report(FaultKind.DOUBLED, place, fault, partial(_set_aside, inspection, COPY))

@@ -30,7 +30,7 @@ from teachpath.offline.import_job import (
 from teachpath.recording.demonstration import to_world, usable_samples
 from teachpath.records import Demonstration, Vector
 
-EXAMINED: Final = "examined"  # folder beside an upload, removed at once
+EXAMINATION_FOLDER: Final = "examined"  # folder beside an upload, removed at once
 MAX_POINTS: Final = 400  # of the curve that is shown
 
 
@@ -131,7 +131,7 @@ def examine_upload(order: ImportOrder, motion: int = 1) -> FileReport:
         times=times,
         positions=positions,
     )
-    folder = order.folder / EXAMINED
+    folder = order.folder / EXAMINATION_FOLDER
     try:
         made = tuple(row for row, _ in record_upload(order, read, folder))
         first = made[0]

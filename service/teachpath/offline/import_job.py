@@ -25,7 +25,7 @@ from teachpath.offline.track_samples import MotionMarks, PhaseMarks
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, Trajectory
 
-UPLOAD, PREPARED = "upload", "prepared"  # in the folder of an import: the file, and what was made of it
+UPLOAD, PREPARED_FOLDER = "upload", "prepared"  # in the folder of an import: the file, and what was made of it
 BEGINNING = 65536  # bytes of a file, by which its format is told
 
 
@@ -130,7 +130,7 @@ def prepare_imports(
 
 
 def prepare_import(order: ImportOrder, *, progress: Progress = lambda fraction, what: None) -> PreparedImport:
-    """Make the demonstrations of an uploaded file, with their recordings below `order.folder / PREPARED`.
+    """Make the demonstrations of an uploaded file, with their recordings below `order.folder / PREPARED_FOLDER`.
 
     Their numbers, and the places of their recordings, are those of a station that has nothing else.
 
@@ -138,7 +138,7 @@ def prepare_import(order: ImportOrder, *, progress: Progress = lambda fraction, 
         UnusableInput: the file cannot be used.
         NotFound: the file is gone.
     """
-    prepared = order.folder / PREPARED
+    prepared = order.folder / PREPARED_FOLDER
     shutil.rmtree(prepared, ignore_errors=True)  # of an attempt whose process died
     progress(0.05, f"reading {order.name}")
     read = read_upload(order, progress=lambda share: progress(0.05 + 0.25 * share, f"reading {order.name}"))

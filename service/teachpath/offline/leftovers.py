@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from teachpath.io.store.faults import TEMPORARY
-from teachpath.io.store.motions import MENDING
+from teachpath.io.store.motions import REPAIR_SUFFIX
 from teachpath.io.store.store import Store
 
 log: logging.Logger = logging.getLogger("teachpath")
@@ -29,7 +29,7 @@ def find_leftovers(data_dir: Path, kept_transfers: Collection[str]) -> list[Path
     found = [folder for folder in (data_dir / TRANSFERS).glob("*") if folder.name not in kept_transfers]
     if (repairs := data_dir / REPAIRS).exists():
         found.append(repairs)
-    found += [file for ending in (TEMPORARY, MENDING) for file in data_dir.glob(f"*/**/*{ending}")]
+    found += [file for ending in (TEMPORARY, REPAIR_SUFFIX) for file in data_dir.glob(f"*/**/*{ending}")]
     found += data_dir.glob(f"*{TEMPORARY}")
     return sorted(found)
 

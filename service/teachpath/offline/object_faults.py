@@ -16,8 +16,8 @@ from teachpath.offline.findings import FaultKind
 from teachpath.offline.row_faults import called, report_lost, rewrite
 from teachpath.records import Demonstration
 
-AGAIN: Final = "mend that, then run the doctor again"
-BACK: Final = "bring it back from another version or a copy of the bucket"
+RERUN_SUGGESTION: Final = "mend that, then run the doctor again"
+RESTORE_SUGGESTION: Final = "bring it back from another version or a copy of the bucket"
 PLACE: Final = re.compile(r"[^/]+/[^/]+\.mcap")
 
 
@@ -45,7 +45,7 @@ def _reported(examination: Examination) -> Iterator[None]:
     except StorageUnavailable as error:
         unknown = {row.id for row in examination.rows.values() if row.recording not in examination.files}
         examination.distant |= unknown  # whether they are there, nobody can say
-        examination.report(FaultKind.UNREADABLE, f"{len(unknown)} recordings", str(error), advice=AGAIN)
+        examination.report(FaultKind.UNREADABLE, f"{len(unknown)} recordings", str(error), advice=RERUN_SUGGESTION)
 
 
 def _check_object(examination: Examination, row: Demonstration) -> None:
@@ -61,7 +61,7 @@ def _check_object(examination: Examination, row: Demonstration) -> None:
         _report_gone(examination, row, place if here else "")
     else:
         if not whole:
-            advice = f"move it away and run the doctor again, which uploads {place}" if here else BACK
+            advice = f"move it away and run the doctor again, which uploads {place}" if here else RESTORE_SUGGESTION
             fault = f"the object {row.recording} is not what was recorded"
             examination.report(FaultKind.DAMAGED, called(row), fault, advice=advice)
         elif here is not None:
@@ -77,7 +77,7 @@ def _report_gone(examination: Examination, row: Demonstration, place: str) -> No
         repair = partial(_upload, examination, row, place)
         examination.report(FaultKind.MISSING, called(row), fault, repair)
     else:
-        report_lost(examination, FaultKind.MISSING, row, fault, BACK)
+        report_lost(examination, FaultKind.MISSING, row, fault, RESTORE_SUGGESTION)
 
 
 def _check_uploaded(examination: Examination, row: Demonstration) -> None:

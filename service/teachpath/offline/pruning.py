@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Final
 
 from teachpath.errors import UnusableInput
-from teachpath.io.store.database_files import ASIDE as DATABASE_ASIDE
 from teachpath.io.store.database_files import DATABASE
+from teachpath.io.store.database_files import REPLACED_SUFFIX as DATABASE_ASIDE
 from teachpath.io.store.recordings import RECORDINGS
-from teachpath.offline.backup import ASIDE, EXECUTIONS
+from teachpath.offline.backup import EXECUTIONS, REPLACED_FOLDER
 from teachpath.offline.file_faults import COPY
 from teachpath.offline.lock import StationLock
-from teachpath.offline.row_faults import DAMAGED
+from teachpath.offline.row_faults import DAMAGED_SUFFIX
 from teachpath.offline.staging import abandoned_imports
-from teachpath.offline.torn_recordings import SALVAGED
+from teachpath.offline.torn_recordings import SALVAGED_SUFFIX
 
 DAY: Final = 86_400.0  # [s]
 
@@ -37,10 +37,14 @@ def prune(data: Path, days: float, *, dry_run: bool = False, executions: bool = 
     if not days >= 0.0:
         raise UnusableInput(f"an age of {days:g} days is under 0")
     with StationLock(data):
-        found = [file for ending in (SALVAGED, COPY, DAMAGED) for file in (data / RECORDINGS).glob(f"*/*{ending}*")]
+        found = [
+            file
+            for ending in (SALVAGED_SUFFIX, COPY, DAMAGED_SUFFIX)
+            for file in (data / RECORDINGS).glob(f"*/*{ending}*")
+        ]
         found += [
             *(data / EXECUTIONS).glob("*.torn"),
-            *data.glob(f"{ASIDE}-*"),
+            *data.glob(f"{REPLACED_FOLDER}-*"),
             *data.glob(f"{DATABASE}{DATABASE_ASIDE}*"),
         ]
         abandoned = [path for each in abandoned_imports(data) for path in (each.folder, each.summary)]

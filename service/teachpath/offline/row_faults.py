@@ -15,7 +15,7 @@ from teachpath.offline.recording_checks import Inspection
 from teachpath.offline.torn_recordings import set_aside
 from teachpath.records import Demonstration
 
-DAMAGED: Final = ".damaged"
+DAMAGED_SUFFIX: Final = ".damaged"
 
 
 def check_rows(examination: Examination) -> None:
@@ -111,7 +111,7 @@ def _move_back(examination: Examination, copy: Inspection, row: Demonstration) -
 
 
 def _replace(examination: Examination, damaged: Inspection, copy: Inspection, row: Demonstration) -> Repair:
-    aside = set_aside(damaged.file, DAMAGED)
+    aside = set_aside(damaged.file, DAMAGED_SUFFIX)
     _move_back(examination, copy, row)
     return Repair(f"a whole copy took its place, and it is kept as {aside.name}")
 

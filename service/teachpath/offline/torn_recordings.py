@@ -18,7 +18,7 @@ from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Demonstration, Scene, Shape, Task
 
-SALVAGED: Final = ".salvaged"
+SALVAGED_SUFFIX: Final = ".salvaged"
 NOTE: Final = "repaired after the service was cut off; what came after the last flush is missing"
 OBJECT_SIZE: Final = (0.04, 0.04, 0.04)  # [m] of an object of which a file says the place alone
 
@@ -37,7 +37,7 @@ def repair(
     if made:
         task = Task(header.task, scene.name, header.calibration.name, 0, header.object_at_grasp)
         store.take_over(task, [(made, folder / RECORDINGS)])
-    set_aside(torn.file, SALVAGED)
+    set_aside(torn.file, SALVAGED_SUFFIX)
     shutil.rmtree(folder, ignore_errors=True)
     return [demonstration.id for demonstration in made]
 

@@ -16,7 +16,7 @@ from teachpath.recorder.take import FinishedTake, Take, TakeOutcome
 from teachpath.recording.phases import TransportSpan
 from teachpath.records import Demonstration, ObjectPose, StreamStatistics, Trajectory, Vector
 
-WAITS = "the recording is whole, and its row is stored as soon as that is possible"
+WAITING_SENTENCE = "the recording is whole, and its row is stored as soon as that is possible"
 MAX_WAITING = 16  # takes of one recording; while more wait, its samples stay in their queue, which is limited
 
 log: logging.Logger = logging.getLogger("teachpath")
@@ -169,7 +169,7 @@ class TakeQueue:
                 reason = self._rows.add(demonstration, partial(self._settle_stored, closed, trajectory))
                 if not reason:
                     return
-                note = f"{WAITS}: {reason}"
+                note = f"{WAITING_SENTENCE}: {reason}"
                 outcome = TakeOutcome(None, (note,), row_waits=True)
         except Exception as error:  # one take's fault must not end the others
             outcome = closed.take.lose(f"recording failed: {error!r}")

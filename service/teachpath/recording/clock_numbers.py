@@ -9,8 +9,8 @@ from teachpath.records import Array
 
 Integers = NDArray[np.int64]
 
-IRREGULAR = 0.25  # of a period, by which a tenth of the steps miss a whole number of periods
-MISSING = 1.5  # periods; a longer step passes over readings
+IRREGULARITY_THRESHOLD = 0.25  # of a period, by which a tenth of the steps miss a whole number of periods
+GAP_THRESHOLD = 1.5  # periods; a longer step passes over readings
 
 
 def number_by_clock(stamps_ns: Integers, positions: Array) -> Integers:
@@ -31,7 +31,7 @@ def number_by_clock(stamps_ns: Integers, positions: Array) -> Integers:
     period = clock_period(steps)
     if period:
         periods = np.round(steps / period).astype(np.int64)
-        passed = np.where(steps > MISSING * period, np.maximum(periods, 1), passed)
+        passed = np.where(steps > GAP_THRESHOLD * period, np.maximum(periods, 1), passed)
     numbers = np.empty(len(stamps_ns), dtype=np.int64)
     numbers[order] = 1 + np.concatenate([[0], np.cumsum(passed)])
     return numbers
@@ -48,7 +48,7 @@ def clock_period(steps: Integers) -> float:
         return 0.0
     period = float(np.median(rising))
     misses = np.abs(rising / period - np.round(rising / period))
-    return period if np.quantile(misses, 0.9) < IRREGULAR else 0.0
+    return period if np.quantile(misses, 0.9) < IRREGULARITY_THRESHOLD else 0.0
 
 
 def without_stride(numbers: Integers) -> Integers:

@@ -17,14 +17,16 @@ from teachpath.records import Array
 
 Indices = NDArray[np.intp]
 
-BORDER = 0.08  # share of the readings at either end in which a leap cuts off what lies outside
-LEAP = 2.5  # times the local median of the steps, over which a step at a border is a leap
+BORDER_SHARE = 0.08  # share of the readings at either end in which a leap cuts off what lies outside
+LEAP_RATIO = 2.5  # times the local median of the steps, over which a step at a border is a leap
 LEAP_WINDOW = 9  # steps of that median
 SPIKE_WINDOW = 5  # readings of the median that takes out spikes
-SMOOTHING = 0.015  # standard deviation of the Gaussian, as a share of the duration
+SMOOTHING_SHARE = 0.015  # standard deviation of the Gaussian, as a share of the duration
 MAX_GRID = 2000  # times at which the speed is computed; far finer than the smoothing
-MOVING = 0.3  # share of the highest speed; before it is first passed and after the last time the hand only rests
-DWELLING = 0.25  # share of the transport's peak speed under which the hand dwells
+MOVING_SPEED_SHARE = (
+    0.3  # share of the highest speed; before it is first passed and after it is last passed the hand rests
+)
+DWELL_SPEED_SHARE = 0.25  # share of the transport's peak speed under which the hand dwells
 ONE_DWELL = 0.06  # share of the highest speed; minima between which the hand is never faster are one dwell
 SURE_DWELL = np.log(2.5)  # least prominence of both dwells
 NO_DWELL = np.log(2.0)  # prominence from which a further minimum may be a dwell too; also least lead over that one
@@ -80,7 +82,7 @@ def find_motion_phases(times: Array, positions: Array) -> MotionPhases:
         return whole
     grid, even, speed = _smoothed(times[kept], positions[kept])
     minima, prominences = _ranked_minima(speed)
-    dwells = minima[(prominences > NO_DWELL) & (speed[minima] < MOVING * speed.max())]
+    dwells = minima[(prominences > NO_DWELL) & (speed[minima] < MOVING_SPEED_SHARE * speed.max())]
     if not len(dwells):  # a hand that goes around a bend slows down as well, but less
         return whole
     found = tuple(sorted(grid[dwells].tolist()))
@@ -109,9 +111,9 @@ def _without_borders(positions: Array, kept: Indices) -> Indices:
     if count < MIN_READINGS:
         return kept
     steps = np.linalg.norm(np.diff(positions[kept], axis=0), axis=1)
-    leaps = np.flatnonzero(steps > LEAP * scipy.ndimage.median_filter(steps, size=LEAP_WINDOW, mode="nearest"))
-    begin = max((k + 1 for k in leaps if k + 1 <= BORDER * count), default=0)
-    end = min((k + 1 for k in leaps if k >= (1.0 - BORDER) * count - 1), default=count)
+    leaps = np.flatnonzero(steps > LEAP_RATIO * scipy.ndimage.median_filter(steps, size=LEAP_WINDOW, mode="nearest"))
+    begin = max((k + 1 for k in leaps if k + 1 <= BORDER_SHARE * count), default=0)
+    end = min((k + 1 for k in leaps if k >= (1.0 - BORDER_SHARE) * count - 1), default=count)
     return kept[begin:end]
 
 
@@ -120,7 +122,7 @@ def _smoothed(times: Array, positions: Array) -> tuple[Array, Array, Array]:
     grid = np.linspace(times[0], times[-1], min(len(times), MAX_GRID))
     calm = scipy.ndimage.median_filter(positions, size=(SPIKE_WINDOW, 1), mode="nearest")
     even = np.column_stack([np.interp(grid, times, axis) for axis in calm.T])
-    width = SMOOTHING * (len(grid) - 1)
+    width = SMOOTHING_SHARE * (len(grid) - 1)
     speed = np.linalg.norm(scipy.ndimage.gaussian_filter1d(even, width, axis=0, order=1, mode="nearest"), axis=1)
     return grid, even, np.maximum(speed, max(LEAST_SPEED * float(speed.max()), np.finfo(float).tiny))
 
@@ -129,7 +131,7 @@ def _ranked_minima(speed: Array) -> tuple[Indices, Array]:
     """Return the indices of the minima on the way, one a dwell, and their prominences, the most prominent first."""
     from scipy.signal import find_peaks  # here, because it loads scipy.stats, and each station would start later
 
-    moving = np.flatnonzero(speed > MOVING * speed.max())
+    moving = np.flatnonzero(speed > MOVING_SPEED_SHARE * speed.max())
     minima, properties = find_peaks(-np.log(speed), prominence=0.0)
     on_the_way = (minima > moving[0]) & (minima < moving[-1])
     minima, prominences = minima[on_the_way], properties["prominences"][on_the_way]
@@ -147,7 +149,7 @@ def _is_one_dwell(speed: Array, one: int, other: int) -> bool:
 
 def _dwell(speed: Array, minimum: int, peak: float) -> slice:
     """Return the span around a minimum in which the hand dwells."""
-    fast = np.flatnonzero(speed >= DWELLING * peak)
+    fast = np.flatnonzero(speed >= DWELL_SPEED_SHARE * peak)
     before, after = fast[fast < minimum], fast[fast > minimum]
     begin = int(before[-1]) + 1 if len(before) else 0
     return slice(min(begin, minimum), max(int(after[0]) if len(after) else len(speed), minimum + 1))

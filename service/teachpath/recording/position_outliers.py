@@ -13,7 +13,7 @@ from teachpath.records import Array, Sample, SampleColumns
 
 HALF_WINDOW = 3  # neighbours on each side
 OUTLIER_THRESHOLD = 4.0  # standard deviations of the neighbours
-OPPOSITE = -0.5  # cosine of the angle between two steps, under which the second turns back
+TURN_BACK_COSINE = -0.5  # cosine of the angle between two steps, under which the second turns back
 MAD_TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for a normal distribution
 
 
@@ -68,7 +68,7 @@ def _count_reversals(positions: Array, dt: Array, settings: RecordingSettings) -
         return 0
     lengths, velocities = np.linalg.norm(steps, axis=1), steps / dt[:, None]
     far = (lengths[1:] > settings.largest_jump) & (lengths[:-1] > settings.largest_jump)
-    opposite = np.sum(steps[1:] * steps[:-1], axis=1) < OPPOSITE * lengths[1:] * lengths[:-1]
+    opposite = np.sum(steps[1:] * steps[:-1], axis=1) < TURN_BACK_COSINE * lengths[1:] * lengths[:-1]
     acceleration = np.linalg.norm(np.diff(velocities, axis=0), axis=1) / (0.5 * (dt[1:] + dt[:-1]))
     return int(np.count_nonzero(far & opposite & (acceleration > settings.largest_acceleration)))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from teachpath.recording.advice import USABLE, ending_advice, rejection_advice
+from teachpath.recording.advice import USABLE_ADVICE, ending_advice, rejection_advice
 from teachpath.recording.phase_statistics import PhaseStatistics
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import StreamStatistics, Verdict
@@ -21,7 +21,16 @@ FAULTS = {
 }
 REPAIRS = {"duplicated": "came twice", "reordered": "came late"}
 # Statistics that belong to a place within a take; those of the positions are counted in the transport phase alone.
-LOCATED = ("lost", "refused", "untracked", "conflicts", "duplicated", "reordered", "longest_gap_ns", "clock_jumps")
+LOCATED_FAULTS = (
+    "lost",
+    "refused",
+    "untracked",
+    "conflicts",
+    "duplicated",
+    "reordered",
+    "longest_gap_ns",
+    "clock_jumps",
+)
 MAX_LISTED_DWELLS = 6
 
 
@@ -60,7 +69,7 @@ def assess_quality(statistics: PhaseStatistics, settings: RecordingSettings) -> 
     reasons = (*rejections, *repairs)
     if rejections:
         return QualityReport(Verdict.REJECT, reasons, rejection_advice(transport, settings))
-    return QualityReport(Verdict.REPAIRED, reasons, USABLE) if repairs else QualityReport(Verdict.CLEAN)
+    return QualityReport(Verdict.REPAIRED, reasons, USABLE_ADVICE) if repairs else QualityReport(Verdict.CLEAN)
 
 
 def reassess_quality(
@@ -88,7 +97,7 @@ def reassess_quality(
 
 def _with_unlocated(statistics: PhaseStatistics) -> StreamStatistics:
     """Return the statistics of the transport phase, together with those of its positions."""
-    return replace(statistics.whole, **{name: getattr(statistics.transport, name) for name in LOCATED})
+    return replace(statistics.whole, **{name: getattr(statistics.transport, name) for name in LOCATED_FAULTS})
 
 
 def _excessive_faults(

@@ -20,8 +20,8 @@ REPEAT_NOISE = 0.2  # standard deviations of the noise; a shorter step is a repe
 NOISE_FLOOR = 6.0  # standard deviations of the noise; a shorter step shows no motion
 LATTICE_FLOOR = 3.0  # steps of the device's resolution, likewise
 MOTION_FLOOR = 0.1  # of the upper quartile of the steps, likewise
-ABRUPT = 0.3  # of the largest step before; a hand that comes to rest takes a shorter last step
-RETURNED = 0.3  # of the way that the hand would have gone at its speed before; a hand that stopped goes none of it
+ABRUPT_STEP_SHARE = 0.3  # of the largest step before; a hand that comes to rest takes a shorter last step
+RETURN_SHARE = 0.3  # of the way that the hand would have gone at its speed before; a hand that stopped goes none of it
 SAME_ORIENTATION = 1.0 - 1e-12  # scalar product of two quaternions, over which they are the same
 LOWEST_QUARTER = 1.1011  # lowest quartile of the length of a normal vector in space, in standard deviations
 THIRD_DIFFERENCE = np.sqrt(20.0)  # standard deviation of third differences of white noise
@@ -116,12 +116,12 @@ def _is_stale(times: Array, steps: Array, still: NDArray[np.bool_], a: int, b: i
         return False
     if b - a < FREEZE_LENGTH:
         return bool(len(after) and after.max() > floor)
-    stopped = before[-1] > max(floor, ABRUPT * before.max())
+    stopped = before[-1] > max(floor, ABRUPT_STEP_SHARE * before.max())
     if not len(after):
         return bool(stopped)
     begun = int(np.flatnonzero(~still[:a])[-NEIGHBOURS:][0])
     went, missed = float(steps[begun:a].sum()), float(times[b + 1] - times[a])
-    return bool(stopped and steps[b] > floor and steps[b] * (times[a] - times[begun]) > RETURNED * missed * went)
+    return bool(stopped and steps[b] > floor and steps[b] * (times[a] - times[begun]) > RETURN_SHARE * missed * went)
 
 
 def _measured_rate(times: Array, steps: Array, repeated: int, floor: float) -> float:

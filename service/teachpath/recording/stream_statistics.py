@@ -16,7 +16,17 @@ MAX_SEQUENCE_JUMP = 100_000  # sequence numbers; a larger gap is a restarted dev
 MAX_LISTED_GAPS = 20
 RESTART_THRESHOLD = 10  # older numbers in a row, each with a newer time, that show that the device counts anew
 # refused payloads without a number explain as many lost numbers
-COUNTED = ("received", "lost", "reordered", "late", "duplicated", "conflicts", "refused", "unnumbered", "untracked")
+COUNTERS = (
+    "received",
+    "lost",
+    "reordered",
+    "late",
+    "duplicated",
+    "conflicts",
+    "refused",
+    "unnumbered",
+    "untracked",
+)
 
 
 class StreamCounter:
@@ -39,7 +49,7 @@ class StreamCounter:
         self.highest: int = -1
         self._declared_rate = declared_rate
         self._gaps = SequenceGaps()
-        self._counts = dict.fromkeys(COUNTED, 0)
+        self._counts = dict.fromkeys(COUNTERS, 0)
         self._late_in_a_row = 0
         self._first_device_ns = 0
         self._newest_device_ns = 0

@@ -1,7 +1,7 @@
 """Fields that records were given after digests and signatures had been computed over them.
 
-Such a field, `field(default=..., metadata=LATER)`, enters no digest while it has its default, so that the digests and
-signatures of before hold.
+Such a field, `field(default=..., metadata=LATER_FIELD)`, enters no digest while it has its default, so that the digests
+and signatures of before hold.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import Field
 from typing import Any, Final
 
-LATER: Final = {"later": True}
+LATER_FIELD: Final = {"later": True}
 
 
 def enters_digest(declared: Field[Any], value: object) -> bool:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from teachpath.errors import UnusableInput
 from teachpath.records.arrays import Array, Matrix, Quaternion, Vector
 from teachpath.records.calibrations import Calibration
-from teachpath.records.later_fields import LATER
+from teachpath.records.later_fields import LATER_FIELD
 from teachpath_proto.keys import is_name, name_refusal
 
 MAX_OUTPUT_REST = 60.0  # [s]
@@ -45,9 +45,9 @@ class Shape:
     file: str = ""
     vertices: tuple[Vector, ...] = ()
     # Not in the text by which arms are hashed: those that are kept hold, and an arm's links have masses of their own.
-    mass: float | None = field(default=None, repr=False, metadata=LATER)
-    max_pieces: int = field(default=1, repr=False, metadata=LATER)
-    pieces: tuple[int, ...] = field(default=(), repr=False, metadata=LATER)
+    mass: float | None = field(default=None, repr=False, metadata=LATER_FIELD)
+    max_pieces: int = field(default=1, repr=False, metadata=LATER_FIELD)
+    pieces: tuple[int, ...] = field(default=(), repr=False, metadata=LATER_FIELD)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Scene:
     floor: float = 0.0
     keep_in: tuple[Shape, ...] = ()
     keep_out: tuple[Shape, ...] = ()
-    display_name: str = field(default="", compare=False, metadata=LATER)
+    display_name: str = field(default="", compare=False, metadata=LATER_FIELD)
 
     @property
     def bodies(self) -> tuple[Shape, ...]:
@@ -152,7 +152,7 @@ class Signature:
     issued_ns: int
     expires_ns: int
     mac: str
-    tool: ToolPose | None = field(default=None, metadata=LATER)
+    tool: ToolPose | None = field(default=None, metadata=LATER_FIELD)
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,5 +291,5 @@ class Plan:
     duration: float
     certificate: Certificate
     tool_speed: float | None = None
-    posture: Posture | None = field(default=None, metadata=LATER)
-    output: ToolOutput | None = field(default=None, metadata=LATER)
+    posture: Posture | None = field(default=None, metadata=LATER_FIELD)
+    output: ToolOutput | None = field(default=None, metadata=LATER_FIELD)

@@ -86,16 +86,16 @@ class SampleColumns(Sequence[Sample]):
         """Return the samples of parts, of which there is at least one, one part after the other."""
         if len(parts) == 1:
             return parts[0]
-        values = {name: np.concatenate([getattr(part, name) for part in parts]) for name in COLUMNS - {*UNEVEN}}
+        values = {name: np.concatenate([getattr(part, name) for part in parts]) for name in COLUMNS - {*FILL_VALUES}}
         values |= {
             name: np.concatenate(_padded([getattr(part, name) for part in parts], lacking))
-            for name, lacking in UNEVEN.items()
+            for name, lacking in FILL_VALUES.items()
         }
         return cls(parts[0].tracker, **values)
 
     def select(self, chosen: slice | NDArray[Any], tracker: str = "") -> SampleColumns:
         """Return the samples that a slice, a mask or indices choose, as of another tracker where that is named."""
-        return SampleColumns(tracker or self.tracker, *(getattr(self, name)[chosen] for name in ORDERED))
+        return SampleColumns(tracker or self.tracker, *(getattr(self, name)[chosen] for name in COLUMN_NAMES))
 
     @property
     def is_in_order(self) -> bool:
@@ -106,7 +106,7 @@ class SampleColumns(Sequence[Sample]):
         return len(self.sequence)
 
     def __iter__(self) -> Iterator[Sample]:
-        plain = (getattr(self, name).tolist() for name in ORDERED)
+        plain = (getattr(self, name).tolist() for name in COLUMN_NAMES)
         for sequence, device_ns, receive_ns, p, q, flexions, count, tracked, buttons, joints in zip(
             *plain, strict=True
         ):
@@ -136,10 +136,13 @@ class SampleColumns(Sequence[Sample]):
         return next(iter(self.select(slice(at, at + 1))))
 
 
-ORDERED = tuple(field.name for field in fields(SampleColumns))[1:]
-COLUMNS = frozenset(ORDERED)
+COLUMN_NAMES = tuple(field.name for field in fields(SampleColumns))[1:]
+COLUMNS = frozenset(COLUMN_NAMES)
 VALUES = Sample._fields[1:]
-UNEVEN = {"flexions": 0.0, "joints": np.nan}  # columns of rows that may have fewer values, and what stands for these
+FILL_VALUES = {
+    "flexions": 0.0,
+    "joints": np.nan,
+}  # stands for what the rows of a column may lack
 
 
 def _rows(values: Sequence[tuple[float, ...]], lacking: float) -> tuple[Array, NDArray[np.int64]]:

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Final
 
 from teachpath.records.arrays import Pose, Vector
-from teachpath.records.later_fields import LATER
+from teachpath.records.later_fields import LATER_FIELD
 from teachpath.records.motion import Shape
 
 NO_POSE: Final[Pose] = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
@@ -115,7 +115,7 @@ class SerialArm:
     payload_mass: float = 0.0
     payload_center: Vector = (0.0, 0.0, 0.0)
     held: tuple[str, ...] = ()
-    gripper_length: float = field(default=0.0, repr=False, metadata=LATER)
+    gripper_length: float = field(default=0.0, repr=False, metadata=LATER_FIELD)
 
     @property
     def hash(self) -> str:

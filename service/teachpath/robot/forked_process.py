@@ -19,7 +19,7 @@ from typing import Final
 
 from teachpath.process_server import CONTEXT, process_start
 
-LOST: Final = 255  # exit status of a process whose server has died, and which nobody can wait for any more
+LOST_EXIT_STATUS: Final = 255  # exit status of a process whose server has died, and which nobody can wait for any more
 
 
 class ForkedProcess:
@@ -80,7 +80,7 @@ class ForkedProcess:
         """Wait until it has ended, and return its exit status, or the number of the signal that killed it, negative."""
         status = self._popen.wait()
         assert status is not None
-        if status == LOST:  # or it lives on without its server, and another one is to take its place
+        if status == LOST_EXIT_STATUS:  # or it lives on without its server, and another one is to take its place
             self.send_signal(signal.SIGKILL)
         self._has_ended = True
         self._popen.close()

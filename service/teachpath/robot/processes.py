@@ -18,7 +18,7 @@ from importlib import import_module
 from typing import Final
 
 from teachpath.logs import relay
-from teachpath.robot.forked_process import LOST, ForkedProcess
+from teachpath.robot.forked_process import LOST_EXIT_STATUS, ForkedProcess
 from teachpath.robot.last_error import LastError
 
 log: logging.Logger = logging.getLogger("teachpath")
@@ -196,7 +196,7 @@ class SupervisedProcess:
 
 def _describe_end(returncode: int, error: str) -> str:
     """Return in words how a process ended, with its last error if it wrote one."""
-    if returncode == LOST:
+    if returncode == LOST_EXIT_STATUS:
         how = "the process server ended, which it was forked from"
     elif returncode < 0:
         how = f"killed by signal {-returncode}, {signal.strsignal(-returncode)}"

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from teachpath.access.access import ANYBODY, Access
+from teachpath.access.access import UNAUTHENTICATED_SUBJECT, Access
 from teachpath.access.loopback import host_of, is_loopback
 from teachpath.access.memory_people import MemoryPeople
 from teachpath.access.memory_tokens import MemoryTokens
@@ -105,7 +105,7 @@ def test_what_was_opened_ends_with_the_token(station: Station, how: str) -> None
 def test_a_station_that_does_not_ask_lets_everybody_do_everything() -> None:
     station = Station("none")
     for authorization in ([], ["Bearer nonsense"], ["a", "b"]):
-        assert station.access.subject(authorization) == ANYBODY
+        assert station.access.subject(authorization) == UNAUTHENTICATED_SUBJECT
     assert station.access.notes() == []
 
 

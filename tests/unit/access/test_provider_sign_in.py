@@ -20,7 +20,7 @@ from teachpath.access.memory_tokens import MemoryTokens
 from teachpath.access.provider_sign_in import LIFE, Answer, open_provider
 from teachpath.access.settings import AuthSettings, OidcSettings
 from teachpath.errors import Conflict, NotAllowed, NotSignedIn, TooManyAttempts, Unreachable, UnusableSettings
-from teachpath.io.identity_provider import KEEP
+from teachpath.io.identity_provider import KEY_SET_LIFETIME
 from teachpath.records import Capability, Person, Subject
 from tests.identity_provider import CLIENT, SECRET, EmulatedProvider, new_key, running
 
@@ -136,7 +136,7 @@ def test_keys_are_changed_while_the_station_runs(lab: Lab) -> None:
     assert lab.sign_in()
     lab.provider.keys.append(new_key("second"))
     assert lab.sign_in()
-    lab.now += KEEP
+    lab.now += KEY_SET_LIFETIME
     lab.provider.keys[:] = [new_key("third")]
     assert lab.sign_in()
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teachpath.access.access import ANYBODY, Access
+from teachpath.access.access import UNAUTHENTICATED_SUBJECT, Access
 from teachpath.access.memory_people import MemoryPeople
 from teachpath.access.memory_tokens import MemoryTokens
 from teachpath.access.proxy_people import Forwarded, require_roles
@@ -73,7 +73,7 @@ def test_groups_without_a_name_are_nobody_s() -> None:
 
 def test_what_a_proxy_says_counts_in_that_mode_alone() -> None:
     nobody_asks = Access(AuthSettings("none"), MemoryTokens(), MemoryPeople(), proxy=SETTINGS)
-    assert nobody_asks.subject([], forwarded=Forwarded("anna", "lab")) == ANYBODY
+    assert nobody_asks.subject([], forwarded=Forwarded("anna", "lab")) == UNAUTHENTICATED_SUBJECT
     tokens = Access(AuthSettings("token"), MemoryTokens(), MemoryPeople(), proxy=SETTINGS)
     with pytest.raises(NotSignedIn):
         tokens.subject([], forwarded=Forwarded("anna", "lab"))

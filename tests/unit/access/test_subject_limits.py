@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teachpath.access.access import ANYBODY, STRANGER
+from teachpath.access.access import REFUSED_SUBJECT, UNAUTHENTICATED_SUBJECT
 from teachpath.access.settings import LimitSettings
 from teachpath.access.subject_limits import MAX_KNOWN, Kind, SubjectLimits, subject_name
 from teachpath.errors import TooManyRequests
@@ -131,8 +131,8 @@ def test_what_is_remembered_is_limited() -> None:
     ],
 )
 def test_a_stranger_counts_by_its_address_and_one_network_of_ipv6_as_one(address: str, name: str) -> None:
-    assert subject_name(STRANGER, address) == name
-    assert subject_name(ANYBODY, address) == name
+    assert subject_name(REFUSED_SUBJECT, address) == name
+    assert subject_name(UNAUTHENTICATED_SUBJECT, address) == name
 
 
 def test_whoever_is_known_counts_by_name_wherever_it_comes_from() -> None:

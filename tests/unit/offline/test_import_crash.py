@@ -16,7 +16,7 @@ from teachpath.io.store.recordings import RECORDINGS
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine
-from teachpath.offline.import_job import PREPARED, UPLOAD, ImportOrder, prepare_import
+from teachpath.offline.import_job import PREPARED_FOLDER, UPLOAD, ImportOrder, prepare_import
 from teachpath.offline.track_samples import PhaseMarks
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array, Calibration, Demonstration, Job, JobState, Scene, Task
@@ -57,7 +57,7 @@ def prepared(folder: Path) -> list[Demonstration]:
 
 
 def finish(store: Store, folder: Path) -> str:
-    return store.finish_import(JOB, TASK, [(prepared(folder), folder / PREPARED / RECORDINGS)])
+    return store.finish_import(JOB, TASK, [(prepared(folder), folder / PREPARED_FOLDER / RECORDINGS)])
 
 
 def finish_and_die(data: Path, folder: Path) -> None:

@@ -20,7 +20,7 @@ from teachpath.live.preview.asset_paths import web_files
 from teachpath.live.preview.page_modules import import_map
 from teachpath.motion.arm.model import Arm
 from teachpath.offline.report import write_package
-from teachpath.offline.report.package import INSTEAD, package_html
+from teachpath.offline.report.package import REPLACED_MODULES, package_html
 from tests.unit.offline.reviews import COUNT, HOSTILE, learned_store, review
 
 
@@ -56,7 +56,9 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Store]:
 def modules() -> dict[str, str]:
     """Return the texts of the modules that a package imports, by their names there."""
     web = web_files()
-    addresses = import_map("report/report.js", lambda path: (web / path).read_text(), instead=INSTEAD)["imports"]
+    addresses = import_map("report/report.js", lambda path: (web / path).read_text(), instead=REPLACED_MODULES)[
+        "imports"
+    ]
     return {name: base64.b64decode(address.partition(",")[2]).decode() for name, address in addresses.items()}
 
 
@@ -85,7 +87,7 @@ def test_the_arm_and_its_object_are_drawn_by_the_views_own_commands(store: Store
 def test_its_modules_are_the_files_of_the_page_but_for_the_names_that_they_import() -> None:
     found = modules()
     for name, text in found.items():
-        path = INSTEAD.get(name.removeprefix("page/"), name.removeprefix("page/"))
+        path = REPLACED_MODULES.get(name.removeprefix("page/"), name.removeprefix("page/"))
         bare = re.compile(r'"(?:page/|\.{1,2}/)[^"]*?(\w+\.(?:esm\.)?js)"')
         assert bare.sub(r'"\1"', text) == bare.sub(r'"\1"', (web_files() / path).read_text())
         assert not re.search(r'\b(from|import) "\.', text)

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from teachpath.recording.advice import AGAIN, FAULT_ADVICE
+from teachpath.recording.advice import FAULT_ADVICE, RETAKE
 from teachpath.recording.phase_statistics import PhaseStatistics
 from teachpath.recording.quality import FAULTS, assess_quality
 from teachpath.recording.settings import RecordingSettings
@@ -36,7 +36,7 @@ def test_each_fatal_fault_has_an_advice_of_its_own_and_says_what_to_do() -> None
     assert {verdict for verdict, _ in said.values()} == {Verdict.REJECT}
     assert len({sentence for _, sentence in said.values()}) == len(FATAL)
     for name, (_, sentence) in said.items():
-        assert AGAIN in sentence, name
+        assert RETAKE in sentence, name
         assert not re.search(r"%|limit|samples?\b", sentence), sentence
 
 

@@ -12,26 +12,26 @@ from teachpath.records import SampledMotion
 
 TOPIC: Final = "/joint_trajectory"
 NOTES: Final = "teachpath-notes"  # name of the metadata
-_NEXT: Final = "=" * 80  # between the definitions of messages
+_MESSAGE_SEPARATOR: Final = "=" * 80  # between the definitions of messages
 SCHEMA: Final = f"""std_msgs/Header header
 string[] joint_names
 trajectory_msgs/JointTrajectoryPoint[] points
-{_NEXT}
+{_MESSAGE_SEPARATOR}
 MSG: std_msgs/Header
 builtin_interfaces/Time stamp
 string frame_id
-{_NEXT}
+{_MESSAGE_SEPARATOR}
 MSG: builtin_interfaces/Time
 int32 sec
 uint32 nanosec
-{_NEXT}
+{_MESSAGE_SEPARATOR}
 MSG: trajectory_msgs/JointTrajectoryPoint
 float64[] positions
 float64[] velocities
 float64[] accelerations
 float64[] effort
 builtin_interfaces/Duration time_from_start
-{_NEXT}
+{_MESSAGE_SEPARATOR}
 MSG: builtin_interfaces/Duration
 int32 sec
 uint32 nanosec

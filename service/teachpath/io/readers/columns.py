@@ -12,8 +12,8 @@ from teachpath.io.readers.contract import OptionNeeded
 POSITION, ROTATION = ("x", "y", "z"), ("qw", "qx", "qy", "qz")
 FLEXION = re.compile(r"f([1-9]\d?)")
 FLEXION_COUNTS = (18, 22)
-OPTIONAL = ("number", "tracked", "grasp", "flexion")
-ROLES = ("t", *POSITION, *ROTATION, *OPTIONAL)
+OPTIONAL_ROLES = ("number", "tracked", "grasp", "flexion")
+ROLES = ("t", *POSITION, *ROTATION, *OPTIONAL_ROLES)
 UNIT_NAMES = {
     "s": "s", "sec": "s", "seconds": "s", "ms": "ms", "milliseconds": "ms", "us": "us", "µs": "us",
     "microseconds": "us", "ns": "ns", "nanoseconds": "ns",

@@ -14,7 +14,7 @@ from teachpath.io.readers.text import table
 from teachpath.io.readers.time_units import stamps_of, time_unit
 
 DEGREES = re.compile(r"[\[(]\s*(deg|degrees?|°)\s*[\])]|_deg$")
-NUMBERED = ("j{}", "q{}", "joint{}", "joint_{}")  # what columns are called where the arm's own names are not used
+NUMBERED_NAMES = ("j{}", "q{}", "joint{}", "joint_{}")  # what columns are called where the arm's own names are not used
 
 
 def joint_places(header: Sequence[str], options: ReadOptions) -> tuple[int, ...]:
@@ -30,7 +30,10 @@ def joint_places(header: Sequence[str], options: ReadOptions) -> tuple[int, ...]
     if not options.joints or set(POSITION) <= set(plain):
         return ()
     numbers = range(1, len(options.joints) + 1)
-    ways = [[plain_name(name) for name in options.joints], *([way.format(k) for k in numbers] for way in NUMBERED)]
+    ways = [
+        [plain_name(name) for name in options.joints],
+        *([way.format(k) for k in numbers] for way in NUMBERED_NAMES),
+    ]
     found = next((names for names in ways if set(names) <= set(plain)), ())
     return tuple(plain.index(name) for name in found)
 

@@ -22,7 +22,7 @@ STATE: Final = "observation.state"
 COUNTERS: Final = ("frame_index", "index", "task_index")  # that say nothing of a motion
 NAMES_KEY: Final = b"teachpath.state"  # metadata of teachpath's own files: names of the numbers of the state
 OWN_CLOCK: Final = "device_ns"  # column of teachpath's own files: when a sample was taken
-WIDEST: Final = 64  # numbers of a list that are columns
+MAX_LIST_LENGTH: Final = 64  # numbers of a list that are columns
 DELIMITER: Final = ","
 
 
@@ -91,7 +91,7 @@ def _expanded(column: str, values: list[Any], names: Any, name: str) -> Iterator
     width = len(values[0])
     if any(value is None or len(value) != width for value in values):
         raise UnusableRecording(f"{name}: {column} has not {width} numbers in every frame")
-    for k in range(min(width, WIDEST)):
+    for k in range(min(width, MAX_LIST_LENGTH)):
         called = str(names[k]) if len(names) == width else f"{column}.{k + 1}"
         yield called, [value[k] for value in values]
 

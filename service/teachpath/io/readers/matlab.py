@@ -18,7 +18,7 @@ from teachpath.io.readers.hdf5 import root_arrays
 
 HEAD, HDF5_HEAD = b"MATLAB 5.0 MAT-file", b"MATLAB 7.3 MAT-file"
 NUMBER_SIZE = 8  # bytes of a number of MATLAB's usual type
-WANTED = frozenset(key for keys in NAMES.values() for key in keys)
+KNOWN_NAMES = frozenset(key for keys in NAMES.values() for key in keys)
 WIDTHS: Mapping[str, int] = {"positions": 3, "orientations": 4}  # numbers in a row
 
 
@@ -41,15 +41,15 @@ def _arrays(content: bytes, name: str, limits: ImportSettings) -> dict[str, NDAr
     from scipy.io import loadmat, whosmat
 
     held = whosmat(io.BytesIO(content))  # type: ignore[arg-type]  # the stubs know files by name only
-    size = sum(math.prod(shape) for key, shape, _ in held if key in WANTED) * NUMBER_SIZE
+    size = sum(math.prod(shape) for key, shape, _ in held if key in KNOWN_NAMES) * NUMBER_SIZE
     if size > limits.max_expanded_size:
         raise UnusableRecording(
             f"{name}: its arrays expand to {size} bytes, limit {limits.max_expanded_size} "
             "(imports.max_expanded_size); split the file"
         )
-    wanted = [key for key, _, _ in held if key in WANTED]
+    wanted = [key for key, _, _ in held if key in KNOWN_NAMES]
     loaded = loadmat(io.BytesIO(content), variable_names=wanted)  # type: ignore[arg-type]
-    arrays = {key: value for key, value in loaded.items() if key in WANTED and isinstance(value, np.ndarray)}
+    arrays = {key: value for key, value in loaded.items() if key in KNOWN_NAMES and isinstance(value, np.ndarray)}
     usable = {key: value for key, value in arrays.items() if value.dtype.kind in "fiub"}
     if not usable:
         names = ", ".join(f"{key} ({kind})" for key, _, kind in held[:12]) or "nothing"

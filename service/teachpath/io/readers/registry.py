@@ -34,7 +34,7 @@ from teachpath.io.readers.tables import ARKIT, EUROC, TABLE, TUM
 
 GROUP = "teachpath.readers"
 LARGEST_FILE = 64 * 1024 * 1024  # bytes
-HOUSE = (
+BUILT_IN_READERS = (
     MOTIVE,
     VICON,
     TRC,
@@ -57,7 +57,7 @@ HOUSE = (
 @functools.cache
 def readers() -> Mapping[str, Reader]:
     """Return all readers by their names; what another package calls like one of the house is left out."""
-    known = {reader.name: reader for reader in HOUSE}
+    known = {reader.name: reader for reader in BUILT_IN_READERS}
     for entry in entry_points(group=GROUP):
         if entry.name in known:
             continue

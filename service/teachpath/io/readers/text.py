@@ -14,7 +14,7 @@ from teachpath.records import Array
 
 LONGEST_LINE = 1_000_000  # characters of a text file
 MAX_EXTRA_LINES = 1000  # lines of a text file that are no samples
-BLANK = {"", "nan", "na", "n/a", "null", "none", "-"}  # cells without a value
+EMPTY_CELLS = {"", "nan", "na", "n/a", "null", "none", "-"}  # cells without a value
 COMMENT = ("#", "%", "//")
 DELIMITERS = ("\t", ";", ",")  # else blanks
 
@@ -87,7 +87,7 @@ def number(cell: str, delimiter: str) -> float:
     Raises:
         ValueError: it is none.
     """
-    if cell.lower() in BLANK:
+    if cell.lower() in EMPTY_CELLS:
         return float("nan")
     try:
         return float(cell)

@@ -9,7 +9,7 @@ from typing import Any, Final
 from sqlalchemy import Engine
 
 from teachpath.errors import TeachpathError
-from teachpath.io.store.changes import CHANNEL, EVERYTHING, Changed
+from teachpath.io.store.changes import ALL_TOPICS, CHANNEL, Changed
 from teachpath.io.store.engine import is_served
 
 log: logging.Logger = logging.getLogger("teachpath")
@@ -67,7 +67,7 @@ class ChangeFeed:
                 driver.autocommit = True
                 driver.execute(f"LISTEN {CHANNEL}")
                 if lost:
-                    self._tell(EVERYTHING, "")
+                    self._tell(ALL_TOPICS, "")
                 while not self._stopping.is_set():
                     for note in driver.notifies(timeout=LINE_CHECK, stop_after=1):
                         self._hear(note.payload)

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 # `changed(table, key)`: called after the transaction, once a row.
 Changed = Callable[[str, str], None]
-EVERYTHING: Final = "all"  # instead of a table: any row may have changed
+ALL_TOPICS: Final = "all"  # instead of a table: any row may have changed
 CHANNEL: Final = "teachpath"  # on which PostgreSQL notifies
 NOTIFY: Final = text(f"SELECT pg_notify('{CHANNEL}', told) FROM unnest(CAST(:told AS text[])) AS told")
 

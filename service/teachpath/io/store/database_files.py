@@ -15,7 +15,7 @@ from teachpath.io.store.faults import database_fault, storage_fault
 from teachpath.io.store.settings import StoreSettings
 
 DATABASE: Final = "teachpath.sqlite"
-ASIDE: Final = ".aside"
+REPLACED_SUFFIX: Final = ".aside"
 SIDE_FILES: Final = ("-wal", "-shm")  # that SQLite keeps beside a database
 TIMEOUT: Final = 5.0  # [s] for which a copy waits for somebody who writes
 
@@ -80,7 +80,7 @@ def set_database_aside(file: Path) -> Path | None:
     if not file.exists():
         return None
     number = 1
-    while (aside := file.with_name(f"{file.name}{ASIDE}-{number}")).exists():
+    while (aside := file.with_name(f"{file.name}{REPLACED_SUFFIX}-{number}")).exists():
         number += 1
     for ending in SIDE_FILES:  # first: without them it would lose its last transactions
         beside = file.with_name(file.name + ending)

@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 from teachpath.errors import UnusableSettings
 from teachpath.io.store.faults import database_fault, refused_by_server
-from teachpath.io.store.tables import NEWEST
+from teachpath.io.store.tables import NEWEST_REVISION
 
 BUSY_TIMEOUT: Final = 5.0  # [s] for which one who writes waits for another
 # How libpq finds out that a server has gone: without these, a cut line would hold a request for many minutes.
@@ -25,7 +25,7 @@ LINE_TIMEOUTS: Final = {
     "keepalives_count": 3,
     "tcp_user_timeout": 10_000,  # [ms]
 }
-MIGRATING: Final = 0x7465616368  # key of the lock under which one of several services makes the tables
+MIGRATION_LOCK: Final = 0x7465616368  # key of the lock under which one of several services makes the tables
 
 
 def open_engine(url: str) -> Engine:
@@ -118,8 +118,8 @@ def _begin_sqlite(connection: Connection) -> None:
 def _migrate(engine: Engine) -> None:
     with _without_foreign_keys(engine) as connection:
         if is_served(engine):
-            connection.execute(select(func.pg_advisory_xact_lock(MIGRATING)))
-        if _version(connection) != NEWEST:
+            connection.execute(select(func.pg_advisory_xact_lock(MIGRATION_LOCK)))
+        if _version(connection) != NEWEST_REVISION:
             from teachpath.io.store.upgrade import upgrade  # here, because most starts have no use for Alembic
 
             upgrade(connection, _shown(engine))

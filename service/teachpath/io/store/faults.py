@@ -28,8 +28,8 @@ SERVER: Final = {
     "58": ("cannot be read or written", "look at the disk of its server: it reports an error of its own"),
     "XX": ("is damaged", "look at the log of its server, and restore a backup of it"),
 }
-FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
-REFUSED: Final = {
+FULL_STORAGE_ERRORS: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+REFUSAL_SUGGESTIONS: Final = {
     errno.EROFS: "mount it for writing, or name another folder with --data",
     errno.EACCES: "let this user read and write it, or name another folder with --data",
     errno.EPERM: "let this user read and write it, or name another folder with --data",
@@ -60,10 +60,10 @@ def storage_fault(error: OSError, place: object) -> StorageUnavailable | None:
         error: as the system raised it.
         place: file or folder, where the error names none.
     """
-    if error.errno in FULL:
+    if error.errno in FULL_STORAGE_ERRORS:
         return StorageFull(f"{error.filename or place}: {error.strerror}; {FREE_SPACE}")
-    if error.errno in REFUSED:
-        return StorageUnavailable(f"{error.filename or place}: {error.strerror}; {REFUSED[error.errno]}")
+    if error.errno in REFUSAL_SUGGESTIONS:
+        return StorageUnavailable(f"{error.filename or place}: {error.strerror}; {REFUSAL_SUGGESTIONS[error.errno]}")
     return None
 
 

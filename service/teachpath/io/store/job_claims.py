@@ -16,7 +16,7 @@ from teachpath.io.store.services import Services
 from teachpath.io.store.tables import JobRow
 from teachpath.records import Job, JobState
 
-UNFINISHED: Final = (JobState.QUEUED.value, JobState.RUNNING.value)
+UNFINISHED_STATES: Final = (JobState.QUEUED.value, JobState.RUNNING.value)
 CANCELLED_EARLY: Final = "cancelled before it began"
 
 
@@ -59,7 +59,7 @@ class JobClaims:
         """Cancel a queued job, or ask the service that does it to; raises NotFound, Conflict when it has ended."""
         with changing(self._engine, self._changed) as session:
             row = session.get(JobRow, key, with_for_update=True)
-            if row is None or row.state not in UNFINISHED:
+            if row is None or row.state not in UNFINISHED_STATES:
                 raise _refusal(row, key)
             left = session.scalar(select(JobRow.id).where(JobRow.id == key, self._services.is_left()))
             if row.state == JobState.QUEUED.value or left:
@@ -74,7 +74,7 @@ class JobClaims:
         """
         if not keys:
             return []
-        cancelled = JobRow.cancel & JobRow.state.in_(UNFINISHED)
+        cancelled = JobRow.cancel & JobRow.state.in_(UNFINISHED_STATES)
         elsewhere = JobRow.service.not_in(("", self._services.id)) & ~self._services.is_left()
         with Session(self._engine) as session:
             return list(session.scalars(select(JobRow.id).where(JobRow.id.in_(keys), cancelled | elsewhere)))
@@ -82,7 +82,7 @@ class JobClaims:
     def change(self, session: Session, key: str, changes: dict[str, Any]) -> None:
         """Change an unfinished job that no other service does; raises NotFound, Conflict."""
         ours = JobRow.service.in_(("", self._services.id))
-        free = (JobRow.id == key, JobRow.state.in_(UNFINISHED), ours)
+        free = (JobRow.id == key, JobRow.state.in_(UNFINISHED_STATES), ours)
         changed = session.execute(update(JobRow).where(*free).values(changes))
         if changed.rowcount == 0:  # type: ignore[attr-defined]
             raise _refusal(session.get(JobRow, key), key)
@@ -96,6 +96,6 @@ class JobClaims:
 def _refusal(row: JobRow | None, key: str) -> NotFound | Conflict:
     if row is None:
         return NotFound(f"there is no job {key!r}")
-    if row.state in UNFINISHED:
+    if row.state in UNFINISHED_STATES:
         return Conflict(f"job {key} is done by another service now")
     return Conflict(f"job {key} has already {row.state}")

@@ -23,7 +23,7 @@ _MESSAGE_HEAD = np.dtype(  # of a message; its data follow
         ("publish_time", "<u8"),
     ]
 )
-_UNCOUNTED = 9  # bytes of opcode and length, which the length does not count
+_PREFIX_SIZE = 9  # bytes of opcode and length, which the length does not count
 
 Integers = NDArray[np.uint64]
 Bytes = NDArray[np.uint8]
@@ -54,7 +54,7 @@ def message_records(batch: MessageBatch) -> tuple[bytes, Integers]:
     lengths = np.full(n, data.shape[1]) if isinstance(data, np.ndarray) else np.fromiter(map(len, data), np.int64, n)
     sizes = (lengths + size).astype(np.uint64)
     heads = np.empty(n, _MESSAGE_HEAD)
-    heads["opcode"], heads["length"], heads["channel"] = Opcode.MESSAGE, sizes - _UNCOUNTED, batch.channel
+    heads["opcode"], heads["length"], heads["channel"] = Opcode.MESSAGE, sizes - _PREFIX_SIZE, batch.channel
     heads["sequence"] = batch.sequences & 0xFFFFFFFF
     heads["log_time"], heads["publish_time"] = batch.log_times, batch.publish_times
     if lengths.min() == lengths.max():  # as nearly always: the records are the rows of one array

@@ -24,7 +24,7 @@ from teachpath.io.wire import message_types
 from teachpath.records import ExecutorStatus, JointState, JournalEntry, LearnedPath, Plan, Setpoint
 
 HEADER, FACTS = "teachpath-motion", "facts"  # names of the metadata
-MENDING: Final = ".mending"  # ends the name of what is made of a torn file
+REPAIR_SUFFIX: Final = ".mending"  # ends the name of what is made of a torn file
 CHUNK: Final = 64 * 1024  # bytes; small chunks lose less when a file is cut off
 FORMER_NAMES: Final = {"pace": "squared_rates"}  # what files that were recorded earlier call the fields of a plan
 TOPICS: Final[dict[str, tuple[Any, Any]]] = {  # message, decoder
@@ -137,7 +137,7 @@ class Motions:
         header = read_motion(part).header
         if header is None:
             raise UnusableRecording(f"{part.name} was cut off before its first record")
-        mended = part.with_suffix(MENDING)
+        mended = part.with_suffix(REPAIR_SUFFIX)
         mended.unlink(missing_ok=True)  # of a doctor or service that was killed
         take = MotionTake(mended, header, self._opener)
         fault = ""

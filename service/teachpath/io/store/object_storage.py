@@ -27,7 +27,12 @@ READ_TIMEOUT: Final = timedelta(seconds=20)  # without a byte
 UPLOAD_GRACE: Final = 30.0  # [s] that an upload may take, and more:
 SLOWEST_LINE: Final = 10_000.0  # bytes in a second
 LOOK_INTERVAL: Final = 0.1  # [s] in which an upload that is to be given up goes on
-FULL: Final = ("XMinioStorageFull", "XMinioAdminBucketQuotaExceeded", "QuotaExceeded", "InsufficientCapacity")
+FULL_STORAGE_CODES: Final = (
+    "XMinioStorageFull",
+    "XMinioAdminBucketQuotaExceeded",
+    "QuotaExceeded",
+    "InsufficientCapacity",
+)
 
 
 def is_address(place: str) -> bool:
@@ -182,7 +187,7 @@ def _fault(error: Exception, address: str) -> TeachpathError:
 
     bucket, said = "/".join(address.split("/")[:3]), str(error)
     code = found[1] if (found := re.search(r"<Code>(\w+)</Code>", said)) else ""
-    if code in FULL or "507 Insufficient" in said:
+    if code in FULL_STORAGE_CODES or "507 Insufficient" in said:
         return StorageFull(f"{bucket} has no room ({code}); free space there, or raise its quota")
     if code == "NoSuchBucket":
         return StorageUnavailable(f"there is no bucket {bucket}; make it, or name another in store.recordings")

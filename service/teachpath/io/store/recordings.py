@@ -23,7 +23,7 @@ from teachpath.io.store.object_cache import CACHE, CACHE_SIZE, ObjectCache
 from teachpath.io.store.object_storage import ObjectStorage, is_address
 from teachpath.io.store.salvage import HEADER, TOPIC, RecordingHeader, salvage_columns
 from teachpath.io.store.sample_rows import SampleRows
-from teachpath.io.store.suspensions import PART, SUSPENDED, Suspensions
+from teachpath.io.store.suspensions import PART_SUFFIX, SUSPENDED_SUFFIX, Suspensions
 from teachpath.io.store.viewer_messages import ViewerMessages, message_batch
 from teachpath.io.wire import encode_sample, message_types
 from teachpath.records import RecordingDigest, Sample, SampleColumns
@@ -114,7 +114,7 @@ class RecordingFile:
         """Stop writing, and leave the file for the service's next start; raises OSError."""
         self.flush()
         self._file.close()
-        self._part.rename(self._part.with_name(self._part.name.removesuffix(PART) + SUSPENDED))
+        self._part.rename(self._part.with_name(self._part.name.removesuffix(PART_SUFFIX) + SUSPENDED_SUFFIX))
 
     def discard(self) -> None:
         """Throw the recording away."""
@@ -146,7 +146,7 @@ class Recordings:
 
     def begin(self, demonstration: str, header: RecordingHeader) -> RecordingFile:
         """Open the recording of a new demonstration."""
-        return RecordingFile(self.folder(header.task) / f"{demonstration}{PART}", header, self._opener)
+        return RecordingFile(self.folder(header.task) / f"{demonstration}{PART_SUFFIX}", header, self._opener)
 
     def folder(self, task: str) -> Path:
         """Return the folder of a task's recordings."""
@@ -244,7 +244,7 @@ class Recordings:
 
     def unfinished(self) -> list[Path]:
         """List the `.part` files: takes that are running, or that a crash left."""
-        return sorted(self._root.glob(f"*/*{PART}"))
+        return sorted(self._root.glob(f"*/*{PART_SUFFIX}"))
 
     def cut_off(self, is_writing: Callable[[], bool]) -> list[Path]:
         """List the `.part` files that a crash or a fault left; none while takes are written."""

@@ -23,7 +23,7 @@ from teachpath.io.store.checks import Checks
 from teachpath.io.store.database_files import database_file, database_url, make_data_folder, make_database_file
 from teachpath.io.store.engine import lock_name, open_engine
 from teachpath.io.store.imported_files import ImportedFiles
-from teachpath.io.store.job_claims import UNFINISHED, JobClaims
+from teachpath.io.store.job_claims import UNFINISHED_STATES, JobClaims
 from teachpath.io.store.journal import Journal
 from teachpath.io.store.lists import Execution, Lists, execution_of
 from teachpath.io.store.motions import Motions
@@ -216,7 +216,7 @@ class Store:
         if task is not None:
             question = question.where(JobRow.task == task)
         if unfinished:
-            question = question.where(JobRow.state.in_(UNFINISHED), JobRow.station == self.services.station)
+            question = question.where(JobRow.state.in_(UNFINISHED_STATES), JobRow.station == self.services.station)
         return [job_of(row) for row in self._all(question)]
 
     def awaited_uploads(self) -> set[str]:

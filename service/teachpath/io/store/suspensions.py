@@ -20,7 +20,7 @@ from teachpath.io.wire import decode_sample
 from teachpath.records import Sample, SuspendedRecording, SuspendedRecordings
 
 FILE: Final = "suspended.json"
-PART, SUSPENDED = ".mcap.part", ".mcap.suspended"
+PART_SUFFIX, SUSPENDED_SUFFIX = ".mcap.part", ".mcap.suspended"
 
 log: logging.Logger = logging.getLogger("teachpath")
 
@@ -67,9 +67,9 @@ class Suspensions:
 
         What an earlier start that was broken off has written of it is removed.
         """
-        if not recording.take or not (file := self._file(recording, SUSPENDED)).exists():
+        if not recording.take or not (file := self._file(recording, SUSPENDED_SUFFIX)).exists():
             return None, []
-        self._file(recording, PART).unlink(missing_ok=True)
+        self._file(recording, PART_SUFFIX).unlink(missing_ok=True)
         with file.open("rb") as stream:
             header, payloads, receive_ns, _ = salvage_messages(stream)
         tracker = recording.request.tracker
@@ -79,18 +79,18 @@ class Suspensions:
     def remove(self, recording: SuspendedRecording) -> None:
         """Remove the take in the hand, which is recorded anew."""
         if recording.take:
-            self._file(recording, SUSPENDED).unlink(missing_ok=True)
+            self._file(recording, SUSPENDED_SUFFIX).unlink(missing_ok=True)
 
     def leave(self, recording: SuspendedRecording) -> None:
         """Leave the take in the hand for the doctor, as one that was cut off."""
         if recording.take:
             with suppress(FileNotFoundError):
-                self._file(recording, SUSPENDED).rename(self._file(recording, PART))
+                self._file(recording, SUSPENDED_SUFFIX).rename(self._file(recording, PART_SUFFIX))
 
     def _file(self, recording: SuspendedRecording, ending: str) -> Path:
         return self._root / recording.request.task / f"{recording.take}{ending}"
 
     def _leave_unnamed(self, takes: set[str]) -> None:
-        for file in self._root.glob(f"*/*{SUSPENDED}"):
-            if (take := file.name.removesuffix(SUSPENDED)) not in takes:
-                file.rename(file.with_name(take + PART))
+        for file in self._root.glob(f"*/*{SUSPENDED_SUFFIX}"):
+            if (take := file.name.removesuffix(SUSPENDED_SUFFIX)) not in takes:
+                file.rename(file.with_name(take + PART_SUFFIX))

@@ -19,7 +19,7 @@ from sqlalchemy import (
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 ID = String(64)
-NEWEST: Final = "0019"  # of the migrations
+NEWEST_REVISION: Final = "0019"  # of the migrations
 
 
 class Base(DeclarativeBase):

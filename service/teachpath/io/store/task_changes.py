@@ -12,12 +12,12 @@ from teachpath.errors import Conflict, NotFound
 from teachpath.io.store.changes import Changed, changing, note
 from teachpath.io.store.display_names import require_distinct
 from teachpath.io.store.engine import lock_name
-from teachpath.io.store.job_claims import UNFINISHED
+from teachpath.io.store.job_claims import UNFINISHED_STATES
 from teachpath.io.store.rows import task_of
 from teachpath.io.store.tables import DemonstrationRow, JobRow, PathRow, PlanRow, RunTable, TaskRow
 from teachpath.records import Task
 
-COPIED: Final = tuple(column.name for column in TaskRow.__table__.columns if column.name != "name")
+COPIED_COLUMNS: Final = tuple(column.name for column in TaskRow.__table__.columns if column.name != "name")
 
 
 class TaskChanges:
@@ -70,7 +70,7 @@ class TaskChanges:
             if (taken := session.get(TaskRow, to)) is not None:
                 raise Conflict(_taken(taken))
             _require_no_jobs(session, name)
-            renamed = TaskRow(name=to, **{column: getattr(row, column) for column in COPIED})
+            renamed = TaskRow(name=to, **{column: getattr(row, column) for column in COPIED_COLUMNS})
             session.add(renamed)
             session.flush()
             _move_rows(session, name, to)
@@ -110,7 +110,7 @@ def _locked(session: Session, name: str) -> TaskRow:
 
 
 def _require_no_jobs(session: Session, name: str) -> None:
-    of_task = select(func.count()).select_from(JobRow).where(JobRow.task == name, JobRow.state.in_(UNFINISHED))
+    of_task = select(func.count()).select_from(JobRow).where(JobRow.task == name, JobRow.state.in_(UNFINISHED_STATES))
     if count := session.scalar(of_task):
         raise Conflict(f"{count} jobs of task {name} wait or run; wait until they have ended, or cancel them")
 

@@ -21,8 +21,8 @@ from teachpath.nurbs import Curve
 from teachpath.records import Array
 
 SAMPLES_PER_GAP = 4  # of the curve between two fitted points, at which its distance from their polygon is watched
-WIDENING = 2.0  # factor on a bound that takes too many control points
-NARROWING = 1.2  # ratio of the bound that is found to one that takes too many
+BOUND_GROWTH = 2.0  # factor on a bound that takes too many control points
+BOUND_RATIO = 1.2  # ratio of the bound that is found to one that takes too many
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,10 +58,10 @@ def approximate_from_polygon(
 
 def _widened(polygon: _Polygon, bound: float, degree: int, room: int) -> tuple[float, BSpline]:
     """Return nearly the least bound for which so many control points suffice, and the spline within it."""
-    least, bound = bound, max(WIDENING * bound, 1e-6)
+    least, bound = bound, max(BOUND_GROWTH * bound, 1e-6)
     while len((found := polygon.approximated(bound, degree)).c) > room:
-        least, bound = bound, WIDENING * bound
-    while bound > NARROWING * least > 0:
+        least, bound = bound, BOUND_GROWTH * bound
+    while bound > BOUND_RATIO * least > 0:
         between = float(np.sqrt(least * bound))
         closer = polygon.approximated(between, degree)
         if len(closer.c) > room:

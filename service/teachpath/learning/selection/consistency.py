@@ -33,7 +33,7 @@ class Part(StrEnum):
     FREEZE = "freeze"
 
 
-FAULTY = {  # what of a demonstration is inconsistent
+FAULT_OF_FEATURE = {  # what of a demonstration is inconsistent
     Part.WIGGLE: "smoothness",
     Part.TREMOR: "smoothness",
     Part.NOISE: "smoothness",
@@ -66,15 +66,19 @@ DETOUR_WARP_SPREAD = (
 BENDS_OF_MANY = 1.74  # how much more the bends of many vary than those of five
 MEDIAN_VARIANCE = 1.57  # of the median of so many values, of their variance
 MAX_WITHOUT_OWN = 30  # members up to which each is compared with the others alone; in more its own value is lost
-BANDS = {Part.WIGGLE: (13, 24), Part.TREMOR: (24, 42), Part.NOISE: (42, 80)}  # degrees, first to one behind the last
-QUICK = slice(13, 80)  # the degrees of all of them
-QUICK_POLYNOMIALS: Array = np.ascontiguousarray(POLYNOMIALS[:, QUICK])
+DEGREE_BANDS = {
+    Part.WIGGLE: (13, 24),
+    Part.TREMOR: (24, 42),
+    Part.NOISE: (42, 80),
+}  # degrees, first to one behind the last
+QUICK_DEGREES = slice(13, 80)  # the degrees of all of them
+QUICK_POLYNOMIALS: Array = np.ascontiguousarray(POLYNOMIALS[:, QUICK_DEGREES])
 # A hand that goes its way has next to nothing in these degrees, and half a second's turn aside and back has; in lower
 # ones it differs from hand to hand, and the degrees above are those of a wiggle.
 DETOUR_BAND = (11.5, 14)
-DIFFERENT = slice(4, 17)  # degrees in which a detour differs from the other motions, their ends and drifts do not
+DETOUR_DEGREES = slice(4, 17)  # degrees in which a detour differs from the other motions, their ends and drifts do not
 SHAKING_WINDOW = CLOCK_POINTS // 12  # over which shaking is averaged
-NEGLIGIBLE = 0.001  # of the size of the path: an amplitude far below it says nothing
+NEGLIGIBLE_AMPLITUDE = 0.001  # of the size of the path: an amplitude far below it says nothing
 NEGLIGIBLE_DETOUR = 0.0006
 NEGLIGIBLE_BEND = 0.01
 NEGLIGIBLE_JUMP = 0.01
@@ -114,10 +118,10 @@ class Measures:
         """Return for each part and each of these members by how many usual spreads it is worse than the others."""
         at = np.asarray(members)
         usual = {
-            part: np.hypot(spread, PACE_SPREAD * self.paces[at]) if part in BANDS else np.full(len(at), spread)
+            part: np.hypot(spread, PACE_SPREAD * self.paces[at]) if part in DEGREE_BANDS else np.full(len(at), spread)
             for part, spread in USUAL_SPREADS.items()
         }
-        z = {part: self._band(part, at, usual[part]) for part in BANDS}
+        z = {part: self._band(part, at, usual[part]) for part in DEGREE_BANDS}
         z[Part.BEND] = self._bend(at, usual[Part.BEND])
         z[Part.DETOUR] = self._detour(at)
         z[Part.PAUSE] = robust_z(self._pauses(at), usual[Part.PAUSE])
@@ -181,7 +185,9 @@ def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bou
     excess = (shaking - np.median(shaking, axis=0)).max(axis=1)
     spread = np.log(np.stack([np.diff(of.passing) / of.duration for of in features]).T * PATH_PARTS + NEGLIGIBLE_PAUSE)
     return Measures(
-        amplitudes={part: np.stack([_amplitudes(*clock, *band) for clock in clocks]) for part, band in BANDS.items()},
+        amplitudes={
+            part: np.stack([_amplitudes(*clock, *band) for clock in clocks]) for part, band in DEGREE_BANDS.items()
+        },
         shaking=shaking,
         shakes=shaking_amplitude(excess) > bound,
         dwell=_beside_neighbours(spread),
@@ -196,13 +202,13 @@ def measure(features: Sequence[MotionFeatures], courses: Array, size: float, bou
                 for clock in (even, paced)
             ]
         ),
-        differences=np.sqrt(np.square(different[:, DIFFERENT]).sum(axis=(1, 2))),
+        differences=np.sqrt(np.square(different[:, DETOUR_DEGREES]).sum(axis=(1, 2))),
     )
 
 
 def shaking_profile(features: MotionFeatures) -> Array:
     """Return the mean square of what is quicker than the intended motion, over a short window: (240,) [m^2]."""
-    quick = np.einsum("nd,kd->nk", QUICK_POLYNOMIALS, np.ascontiguousarray(features.timed[QUICK].T))
+    quick = np.einsum("nd,kd->nk", QUICK_POLYNOMIALS, np.ascontiguousarray(features.timed[QUICK_DEGREES].T))
     return np.asarray(uniform_filter1d(np.square(quick).sum(axis=1), SHAKING_WINDOW, mode="nearest"))
 
 
@@ -250,7 +256,9 @@ def _cumulative(coefficients: Array) -> Array:
     return np.concatenate([np.zeros((len(energies), 1)), np.cumsum(energies, axis=1)], axis=1)
 
 
-def _amplitudes(cumulative: Array, paces: Array, low: float, high: float, negligible: float = NEGLIGIBLE) -> Array:
+def _amplitudes(
+    cumulative: Array, paces: Array, low: float, high: float, negligible: float = NEGLIGIBLE_AMPLITUDE
+) -> Array:
     """Return the logarithms of the amplitudes in a band whose degrees are multiplied by `paces` (m,)."""
     paces = np.minimum(paces, DEGREES / high)
     below, upto = (_interpolated(cumulative, degree * paces) for degree in (low, high))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from teachpath.learning.resampling import at_equal_arc_length, at_equal_times, extent
-from teachpath.learning.selection.consistency import FAULTY, Measures, Part, measure, others_median
+from teachpath.learning.selection.consistency import FAULT_OF_FEATURE, Measures, Part, measure, others_median
 from teachpath.learning.selection.deviations import PATH_POINTS, ComparedMembers, describe_deviation, describe_pace
 from teachpath.learning.selection.features import MotionFeatures, extract_features, positions_and_velocities
 from teachpath.learning.selection.likelihoods import convergence, fold_count, score_likelihoods
@@ -168,7 +168,8 @@ def _score(cluster: _Members, i: int, rank: int, likelihood: float, stability: f
         part = _worst_part(selection, i)
         deviation = describe_deviation(cluster.trajectories[i], cluster.features[i], _others(cluster.measured, i), part)
         if not selection.selected[i]:
-            note = f"inconsistent in its {FAULTY[part]} (z {measure[i]:.1f}): {deviation.sentence}; {_cost(cluster, i)}"
+            fault = f"inconsistent in its {FAULT_OF_FEATURE[part]} (z {measure[i]:.1f})"
+            note = f"{fault}: {deviation.sentence}; {_cost(cluster, i)}"
     else:
         deviation = describe_pace(cluster.features[i].duration, float(cluster.durations[i]))
     margin = float(measure[i] - measure[order[rank + 1]]) if rank + 1 < len(order) else None

@@ -24,7 +24,7 @@ Outline = Sequence[tuple[float, float]]
 BEVEL = 0.006  # [m] width of the broken edges of prisms
 
 # three.js lays a cylinder along y; ours stand along z.
-_UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+_Z_UP_ROTATION = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
 
 def solid(
@@ -56,7 +56,7 @@ def solid(
         shape = geometry.Box([float(edge) for edge in size])
     elif kind == "cylinder":
         shape = geometry.Cylinder(float(size[1]), float(size[0]))
-        pose = pose @ _UPRIGHT
+        pose = pose @ _Z_UP_ROTATION
     elif kind == "sphere":
         shape = geometry.Sphere(float(size[0]))
     elif kind == "prism":

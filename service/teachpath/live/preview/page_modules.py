@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 _SPECIFIER = re.compile(
     r"""(?<=\bfrom )["'](\.{1,2}/[^"']+)["']|(?<=^import )["'](\.{1,2}/[^"']+)["'];""", re.MULTILINE
 )
-_LATE = re.compile(r"""(?<=\bawait import\()["'](\.{1,2}/[^"']+)["'](?=\))""")
+_DYNAMIC_IMPORT = re.compile(r"""(?<=\bawait import\()["'](\.{1,2}/[^"']+)["'](?=\))""")
 
 
 def import_map(entry: str, read: Callable[[str], str], *, instead: Mapping[str, str]) -> dict[str, dict[str, str]]:
@@ -34,7 +34,7 @@ def import_map(entry: str, read: Callable[[str], str], *, instead: Mapping[str, 
         text = read(instead.get(path, path))
         folder = posixpath.dirname(instead.get(path, path))
         text, imported = _with_bare_names(text, folder, _SPECIFIER)
-        texts[path], late = _with_bare_names(text, folder, _LATE)
+        texts[path], late = _with_bare_names(text, folder, _DYNAMIC_IMPORT)
         waiting += imported + late
     return {"imports": {f"page/{path}": data_address(text, "text/javascript") for path, text in sorted(texts.items())}}
 

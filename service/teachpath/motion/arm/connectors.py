@@ -15,7 +15,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.poses import pose_matrix
 from teachpath.records import Array, SerialArm, Shape
 
-THINNER: Final = 0.8  # share of the thinnest solid's half thickness: where there is no gap, nothing of it is seen
+RADIUS_SHARE: Final = 0.8  # share of the thinnest solid's half thickness: where there is no gap, nothing of it is seen
 DEFAULT_RADIUS: Final = 0.03  # [m] between links without solids
 MIN_LENGTH: Final = 0.001  # [m]
 
@@ -67,7 +67,7 @@ def _radius(model: SerialArm, link: int) -> float:
     """Return the radius [m] of a link's connector: thinner than what it joins."""
     solids = [model.base_solids, *(one.solids for one in model.links)]
     joined = [*solids[link], *(solids[link + 1] if link + 1 < len(solids) else ())]
-    return THINNER * min(map(_half_thickness, joined)) if joined else DEFAULT_RADIUS
+    return RADIUS_SHARE * min(map(_half_thickness, joined)) if joined else DEFAULT_RADIUS
 
 
 def _half_thickness(shape: Shape) -> float:

@@ -13,7 +13,7 @@ from teachpath.motion.arm.puma560 import Array
 HELD_BODY: Final = "held"
 MAX_GRASP_DISTANCE: Final = 0.05  # [m] from grasp point to object's centre; an object farther off is not in the gripper
 GRAVITY: Final = 9.81  # [m/s^2]
-UPWARD: Final = np.array([0.0, 0.0, GRAVITY])  # [m/s^2] that a body at rest feels
+UPWARD_ACCELERATION: Final = np.array([0.0, 0.0, GRAVITY])  # [m/s^2] that a body at rest feels
 POINT_INERTIA: Final = 1e-9  # [kg m^2], of what counts as a point: MuJoCo wants some
 
 
@@ -96,7 +96,7 @@ class UnknownGrasp:
 
         The arm may be slower, too: `motion` is that at full speed.
         """
-        still = np.linalg.norm(motion.pull - UPWARD, axis=1) + GRAVITY
+        still = np.linalg.norm(motion.pull - UPWARD_ACCELERATION, axis=1) + GRAVITY
         pull = still + np.linalg.norm(motion.translation, axis=1) @ acceleration
         bend = np.linalg.norm(motion.bend, axis=1) + np.linalg.norm(motion.turning, axis=1) @ acceleration
         return np.asarray(self._bounds(motion, pull[:, None], bend[:, None])[:, 0])

@@ -15,7 +15,7 @@ from teachpath.motion.arm.puma560 import DEFAULT_VARIANT, GRASP_DEPTH, TOOL_LENG
 from teachpath.motion.arm.tool import tool_matrix, tool_of_settings
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import SerialArm, ToolPose
-from teachpath.records.later_fields import LATER
+from teachpath.records.later_fields import LATER_FIELD
 
 GripperKind = Literal["parallel", "suction", "none"]
 
@@ -55,9 +55,9 @@ class Arm:
     grasp_depth: float = GRASP_DEPTH
     payload: Payload = Payload()
     tool_speed: float | None = None
-    tool: ToolPose | None = field(default=None, metadata=LATER)
-    model: SerialArm | None = field(default=None, metadata=LATER)
-    gripper: GripperKind = field(default="parallel", metadata=LATER)
+    tool: ToolPose | None = field(default=None, metadata=LATER_FIELD)
+    model: SerialArm | None = field(default=None, metadata=LATER_FIELD)
+    gripper: GripperKind = field(default="parallel", metadata=LATER_FIELD)
 
     @classmethod
     def of_settings(cls, settings: MotionSettings) -> Arm:

@@ -17,11 +17,11 @@ from teachpath.motion.arm.poses import pose_matrix
 from teachpath.motion.arm.serial_kinematics import link_terms, serial_link_frames
 from teachpath.records import Array, SerialArm
 
-CLOSED: Final = 1e-9  # m and rad, within which a solution meets its pose
+POSE_TOLERANCE: Final = 1e-9  # m and rad, within which a solution meets its pose
 RESIDUAL: Final = 1e-12  # m and rad, to which it is refined; rounding leaves some 1e-15
 SEEDS: Final = 200  # of one pose
 ITERATIONS: Final = 60  # from a random seed
-SAME: Final = 1e-4  # rad, within which two solutions are one
+SAME_SOLUTION_TOLERANCE: Final = 1e-4  # rad, within which two solutions are one
 
 
 def solve_near(
@@ -73,14 +73,14 @@ def pose_errors(poses: Array, q: Array, arm: SerialArm) -> Array:
 def all_solutions(pose: Array, arm: SerialArm, seeds: int = SEEDS) -> Array:
     """Return the configurations (k, joints) within the joints' limits that were found for a pose (4, 4).
 
-    Each closes within `CLOSED`. An arm with seven joints has infinitely many: one is returned for each seed that leads
-    to one. The same seeds are tried each time. Whole turns of a joint are no solutions of their own: each angle is the
-    one nearest to the middle of the joint's range.
+    Each meets the pose within `POSE_TOLERANCE`. An arm with seven joints has infinitely many: one is returned for each
+    seed that leads to one. The same seeds are tried each time. Whole turns of a joint are no solutions of their own:
+    each angle is the one nearest to the middle of the joint's range.
     """
     lower, upper = limits_of(arm)
     begin = np.random.default_rng(0).uniform(np.maximum(lower, -np.pi), np.minimum(upper, np.pi), (seeds, len(lower)))
     q, off = solve_near(np.repeat(pose[None], seeds, axis=0), begin, arm)
-    q = nearest_turn(q[off <= CLOSED], (lower + upper) / 2)
+    q = nearest_turn(q[off <= POSE_TOLERANCE], (lower + upper) / 2)
     q = q[np.all((q >= lower) & (q <= upper), axis=1)]
     return _distinct(q)
 
@@ -110,6 +110,6 @@ def _distinct(q: Array) -> Array:
     """Return configurations (k, joints) without those that differ from an earlier one by whole turns alone."""
     kept: list[NDArray[np.float64]] = []
     for row in q:
-        if all(np.abs(np.sin((row - other) / 2)).max() > SAME / 2 for other in kept):
+        if all(np.abs(np.sin((row - other) / 2)).max() > SAME_SOLUTION_TOLERANCE / 2 for other in kept):
             kept.append(row)
     return np.array(kept).reshape(len(kept), q.shape[1])

@@ -27,8 +27,8 @@ ROUND_AXIS_SHARE: Final = 0.7  # of a cylinder's axis along a finger's axis, abo
 
 _FINGER: Final = next(solid for solid in collision_solids() if solid.opening_offset[1] > 0)
 HALF_OPENING: Final = _FINGER.position[1] - _FINGER.size[1] / 2 + _FINGER.opening_offset[1]  # m, to an open finger
-_LOW: Final = np.array(_FINGER.position) - np.array(_FINGER.size) / 2
-_HIGH: Final = np.array(_FINGER.position) + np.array(_FINGER.size) / 2
+_FINGER_LOWER_CORNER: Final = np.array(_FINGER.position) - np.array(_FINGER.size) / 2
+_FINGER_UPPER_CORNER: Final = np.array(_FINGER.position) + np.array(_FINGER.size) / 2
 
 
 def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> str:
@@ -51,15 +51,17 @@ def grasp_fault(shape: Shape, pose: Array, arm: Arm, *, margin: float = 0.0) -> 
     if (out := max(high[1], -low[1]) - room) > 0:
         return f"{shape.name} sticks out from between the open fingers by {describe_length(out)}"
     for axis, where in ((2, "along their length"), (0, "across their width")):
-        overlap = min(high[axis], _HIGH[axis]) - max(low[axis], _LOW[axis])
+        overlap = min(high[axis], _FINGER_UPPER_CORNER[axis]) - max(low[axis], _FINGER_LOWER_CORNER[axis])
         if overlap < 0:
             return f"the fingers miss {shape.name} by {describe_length(-overlap)} {where}"
-        needed = min(arm.grasp_depth + margin, high[axis] - low[axis], _HIGH[axis] - _LOW[axis])
+        needed = min(
+            arm.grasp_depth + margin, high[axis] - low[axis], _FINGER_UPPER_CORNER[axis] - _FINGER_LOWER_CORNER[axis]
+        )
         if overlap < needed - 1e-9:
             depth, least = describe_lengths(overlap, needed)
             return f"the fingers overlap {shape.name} by {depth} {where}, less than {least} (motion.grasp_depth)"
         if _is_round(shape, pose, axis):
-            beyond = max(_LOW[axis] - centre[axis], centre[axis] - _HIGH[axis]) + margin
+            beyond = max(_FINGER_LOWER_CORNER[axis] - centre[axis], centre[axis] - _FINGER_UPPER_CORNER[axis]) + margin
             if beyond > 0:
                 return f"the fingers end {describe_length(beyond)} before the middle of {shape.name} {where}"
     return ""

@@ -24,7 +24,7 @@ from teachpath.motion.arm.kinematics import (
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.newton import turn_wrists
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.arm.serial_ik import CLOSED, RESIDUAL, follow_poses, geometry, pose_errors
+from teachpath.motion.arm.serial_ik import POSE_TOLERANCE, RESIDUAL, follow_poses, geometry, pose_errors
 from teachpath.motion.arm.serial_kinematics import serial_jacobian
 
 WRIST: Final = 3  # joints of the wrist, the last ones
@@ -81,7 +81,7 @@ class HandKinematics:
             first = np.broadcast_to(tool_pose(begin, self.arm), (ways, 1, 4, 4))
             joints = follow_poses(np.concatenate([first, poses], axis=1), np.tile(begin, (ways, 1)), model, ITERATIONS)
             off = pose_errors(poses.reshape(-1, 4, 4), joints[:, 1:].reshape(-1, len(begin)), model)
-            return joints, (np.abs(off).max(axis=1) > CLOSED).reshape(ways, count)
+            return joints, (np.abs(off).max(axis=1) > POSE_TOLERANCE).reshape(ways, count)
         solved = inverse_kinematics(poses.reshape(-1, 4, 4), self.arm, previous_q4=float(begin[3]))
         joints = solved.joints[:, self.branch].reshape(ways, count, len(begin))
         excess = solved.reach_excess[:, self.branch].reshape(ways, count)
@@ -110,7 +110,7 @@ class HandKinematics:
             found = np.empty((len(before), WRIST))
             given = (*geometry(model), ITERATIONS, RESIDUAL)
             off = turn_wrists(np.ascontiguousarray(before), np.ascontiguousarray(orientations), begin, *given, found)
-            return found if off <= CLOSED else None
+            return found if off <= POSE_TOLERANCE else None
         flip = self.branch % 2 == 1
         solved = wrist_joints(before, orientations, self.arm, flip=flip, previous_q4=float(begin[3]))
         return np.unwrap(np.concatenate([begin[None, -WRIST:], solved]), axis=0)[1:]

@@ -19,7 +19,7 @@ from teachpath.motion.execution.hand_kinematics import WRIST, HandKinematics
 from teachpath.motion.timing.constant_jerk import MIN_PERIODS, ConstantJerkMotion
 
 DIFFERENCE_STEP: Final = 1e-4  # [s] of the differences that give velocity and acceleration of the wrist
-STILL: Final = np.zeros(3)
+ZERO_VELOCITY: Final = np.zeros(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +128,7 @@ def plan_tool_motion(
 def _state_to_rest(begin: ToolState, goal: Array, turn: Array, limits: Array) -> Trajectory | None:
     lead = len(goal)
     inputs = InputParameter(lead + WRIST)
-    inputs.current_position = [*begin.joints[0, :lead], *STILL]
+    inputs.current_position = [*begin.joints[0, :lead], *ZERO_VELOCITY]
     inputs.current_velocity = [*begin.joints[1, :lead], *begin.turning[0]]
     inputs.current_acceleration = [*begin.joints[2, :lead], *begin.turning[1]]
     inputs.target_position = [*goal, *turn]

@@ -19,7 +19,7 @@ from teachpath.motion.paths.ik_branches import (
     rolled_poses,
 )
 from teachpath.motion.paths.numeric_branches import TrackedSolution, track_solutions
-from teachpath.motion.paths.redundancy import UNREACHED, Redundancy, Sheet, find_sheets
+from teachpath.motion.paths.redundancy import UNREACHABLE_COST, Redundancy, Sheet, find_sheets
 from teachpath.motion.paths.tool_path import ToolPath
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import SerialArm
@@ -67,7 +67,7 @@ def _numeric_candidates(
     found = list[Candidate]()
     for number, sheet in enumerate(find_sheets(ways, model) if arm.joint_count > POSE_COUNT else ()):
         # where none is free, one that is blocked least
-        costs = np.minimum(sheet.costs(arm, settings, path.posture), UNREACHED)
+        costs = np.minimum(sheet.costs(arm, settings, path.posture), UNREACHABLE_COST)
         if (sequence := sheet.cheapest(costs)) is not None:
             found.append(redundant_candidate(path, arm, model, number, sheet, sequence, rolls[sheet.way]))
     if found:

@@ -9,11 +9,11 @@ from typing import Final
 import numpy as np
 
 from teachpath.errors import PathRefused
-from teachpath.motion.arm.serial_ik import CLOSED, SEEDS, all_solutions, follow_poses, limits_of, solve_near
+from teachpath.motion.arm.serial_ik import POSE_TOLERANCE, SEEDS, all_solutions, follow_poses, limits_of, solve_near
 from teachpath.records import Array, SerialArm
 
 STRIDE: Final = 5  # nodes from one that is solved from the one before to the next; those between begin in between
-FOLLOWING: Final = 12  # iterations from a neighbour's solution
+FOLLOWING_ITERATIONS: Final = 12  # iterations from a neighbour's solution
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +42,12 @@ def track_solutions(ways: Sequence[Array], arm: SerialArm) -> list[TrackedSoluti
     of = np.repeat(np.arange(len(ways)), [len(start) for start in starts])
     poses, count = np.stack(ways)[of], len(ways[0])  # (k, n, 4, 4)
     coarse = np.unique(np.append(np.arange(0, count, STRIDE), count - 1))
-    rows = follow_poses(poses[:, coarse], np.concatenate(starts), arm, FOLLOWING)
+    rows = follow_poses(poses[:, coarse], np.concatenate(starts), arm, FOLLOWING_ITERATIONS)
     nodes = np.arange(count)
     seeds = [[np.interp(nodes, coarse, joint) for joint in found.T] for found in rows]  # (k, dof, n)
     flat = np.swapaxes(np.array(seeds), 1, 2).reshape(-1, rows.shape[2])
-    joints, off = solve_near(poses.reshape(-1, 4, 4), flat, arm, FOLLOWING)
-    excess = np.where(off <= CLOSED, 0.0, off).reshape(len(of), count)
+    joints, off = solve_near(poses.reshape(-1, 4, 4), flat, arm, FOLLOWING_ITERATIONS)
+    excess = np.where(off <= POSE_TOLERANCE, 0.0, off).reshape(len(of), count)
     each = zip(of, joints.reshape(len(of), count, -1), excess, strict=True)
     return [TrackedSolution(int(way), found, missed) for way, found, missed in each]
 
@@ -60,8 +60,8 @@ def follow_near(poses: Array, seeds: Array, arm: SerialArm, *, held: int | None 
     Raises:
         PathRefused: one of them does not close.
     """
-    joints, off = solve_near(poses, seeds, arm, FOLLOWING, held=held)
-    if off.max() > CLOSED:
+    joints, off = solve_near(poses, seeds, arm, FOLLOWING_ITERATIONS, held=held)
+    if off.max() > POSE_TOLERANCE:
         raise PathRefused(
             f"between two nodes of the path, {arm.name} was led {1e3 * off.max():.3g} mm past it: the path is too near "
             "a singular configuration there; move it, or turn the tool"

@@ -18,10 +18,10 @@ from scipy.interpolate import BSpline
 from teachpath.motion.arm.kinematics import min_singular_value
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.newton_grid import fill_row
-from teachpath.motion.arm.serial_ik import CLOSED, RESIDUAL, geometry, limits_of, nearest_turn, solve_near
+from teachpath.motion.arm.serial_ik import POSE_TOLERANCE, RESIDUAL, geometry, limits_of, nearest_turn, solve_near
 from teachpath.motion.arm.serial_kinematics import serial_jacobian
 from teachpath.motion.paths.grid_search import cheapest_sequence, smoothed
-from teachpath.motion.paths.numeric_branches import FOLLOWING, TrackedSolution
+from teachpath.motion.paths.numeric_branches import FOLLOWING_ITERATIONS, TrackedSolution
 from teachpath.motion.paths.posture import posture_cost
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Array, SerialArm
@@ -31,9 +31,9 @@ SEARCH_NODES: Final = 40  # of the path, about
 SEEDS: Final = 100  # of the solutions at the path's start
 SAMPLES: Final = 200  # configurations by which the joint is chosen
 MAX_STEPS: Final = 2  # of angle from a search node to the next; a change by c costs c^2
-UNREACHED: Final = 1e4  # cost of a place where the arm cannot be, where a sequence may be there all the same
+UNREACHABLE_COST: Final = 1e4  # cost of a place where the arm cannot be, where a sequence may be there all the same
 LIMIT_SHARE: Final = 0.99  # of half a joint's range, within which a sequence stays: smoothing changes it
-SAME: Final = 0.01  # rad, within which two solutions with the same angle are one
+SAME_SOLUTION_TOLERANCE: Final = 0.01  # rad, within which two solutions with the same angle are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class Sheet:
         limits = arm.limits
         middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
         use = (np.abs(self.joints - middle) / half).max(axis=2)
-        free = (self.off <= CLOSED) & (use <= LIMIT_SHARE)
+        free = (self.off <= POSE_TOLERANCE) & (use <= LIMIT_SHARE)
         costs = np.full(self.off.shape, np.inf)
         values = min_singular_value(self.joints[free], arm)
         costs[free] = np.where(values >= settings.least_singular, 0.1 / np.maximum(values, 1e-9) + use[free], np.inf)
@@ -93,8 +93,8 @@ class Sheet:
         coarse = self.joints[np.arange(len(self.nodes)), sequence]
         seeds = np.stack([np.interp(np.arange(len(poses)), self.nodes, joint) for joint in coarse.T], axis=1)
         seeds[:, self.joint] = angles
-        joints, off = solve_near(poses, seeds, arm, FOLLOWING, held=self.joint)
-        return TrackedSolution(self.way, joints, np.where(off <= CLOSED, 0.0, off))
+        joints, off = solve_near(poses, seeds, arm, FOLLOWING_ITERATIONS, held=self.joint)
+        return TrackedSolution(self.way, joints, np.where(off <= POSE_TOLERANCE, 0.0, off))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +148,7 @@ class _Grid:
     def row(self, pose: Array, before: Array, begin: int = -1) -> tuple[Array, Array]:
         """Return configurations (k, joints) and their distances (k,) from a pose (4, 4) (see `fill_row`)."""
         joints, off = before.copy(), np.empty(len(self.angles))
-        given = (*self._geometry, FOLLOWING, RESIDUAL, CLOSED)
+        given = (*self._geometry, FOLLOWING_ITERATIONS, RESIDUAL, POSE_TOLERANCE)
         fill_row(np.ascontiguousarray(pose), self.angles, self.joint, before, begin, *given, joints, off)
         return joints, off
 
@@ -157,7 +157,7 @@ class _Grid:
         columns, solutions = self._solutions(pose)
         rows: list[tuple[Array, Array]] = []
         for column, begin in zip(columns, solutions, strict=True):
-            if not any(off[column] <= CLOSED and _same(joints[column], begin) for joints, off in rows):
+            if not any(off[column] <= POSE_TOLERANCE and _same(joints[column], begin) for joints, off in rows):
                 rows.append(self.row(pose, np.tile(begin, (len(self.angles), 1)), int(column)))
         return rows
 
@@ -171,9 +171,9 @@ class _Grid:
         q, off = solve_near(np.repeat(pose[None], SEEDS, axis=0), seeds, arm, held=self.joint)
         turned = nearest_turn(q, (lower + upper) / 2)
         turned[:, self.joint] = q[:, self.joint]
-        good = (off <= CLOSED) & np.all((turned >= lower) & (turned <= upper), axis=1)
+        good = (off <= POSE_TOLERANCE) & np.all((turned >= lower) & (turned <= upper), axis=1)
         return columns[good], turned[good]
 
 
 def _same(one: Array, other: Array) -> bool:
-    return float(np.abs(one - other).max()) <= SAME
+    return float(np.abs(one - other).max()) <= SAME_SOLUTION_TOLERANCE

@@ -11,7 +11,7 @@ from teachpath.errors import PathRefused
 from teachpath.motion.arm.kinematics import inverse_kinematics, tool_pose
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.arm.serial_ik import CLOSED, solve_near
+from teachpath.motion.arm.serial_ik import POSE_TOLERANCE, solve_near
 from teachpath.motion.collision.collision_model import CollisionModel, Load
 from teachpath.motion.refusals import first_accepted
 from teachpath.motion.settings import MotionSettings
@@ -45,7 +45,7 @@ def _nearest_solutions(poses: Array, q: Array, arm: Arm) -> list[Array]:
     """Return the configurations (joints,) nearest to `q` (joints,) at those of poses (m, 4, 4) that the arm reaches."""
     if arm.model is not None:
         joints, off = solve_near(poses, np.repeat(q[None], len(poses), axis=0), arm.model)
-        return list(joints[off <= CLOSED])
+        return list(joints[off <= POSE_TOLERANCE])
     solutions = inverse_kinematics(poses, arm, previous_q4=float(q[3]))
     found = []
     for branches, excess in zip(solutions.joints, solutions.reach_excess[:, 0], strict=True):

@@ -16,7 +16,7 @@ from teachpath.motion.refusals import describe_direction, refusal
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Failure, Scene, Shape, Suggestion
 
-CENTRED: Final = 0.002  # m, between the start of a path and an object's middle: there is nothing to move
+CENTRE_TOLERANCE: Final = 0.002  # m, between the start of a path and an object's middle: there is nothing to move
 
 
 def check_start(tool_path: ToolPath, scene: Scene, arm: Arm, settings: MotionSettings) -> None:
@@ -66,7 +66,7 @@ def start_failure(tool_path: ToolPath, scene: Scene, arm: Arm, settings: MotionS
     off = float(np.linalg.norm((x, y, z)))
     reason = f"the path starts {100 * off:.1f} cm from where {carried.name} stands, and there {faults[0]}"
     sentence = f"put an object there that the gripper can take, or turn {carried.name}"
-    if off > CENTRED:
+    if off > CENTRE_TOLERANCE:
         count = len(tool_path.curve.control_points)
         sentence = f"move control point 1 of {count} by {1000 * off:.0f} mm {describe_direction((x, y, z))}"
     begin_x, begin_y, begin_z = (float(v) for v in tool_path.positions[0])

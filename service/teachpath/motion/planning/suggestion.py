@@ -10,7 +10,7 @@ import numpy as np
 
 from teachpath.motion.arm.kinematics import inverse_kinematics, min_singular_value
 from teachpath.motion.arm.puma560 import Array
-from teachpath.motion.arm.serial_ik import CLOSED, solve_near
+from teachpath.motion.arm.serial_ik import POSE_TOLERANCE, solve_near
 from teachpath.motion.paths.ik_branches import Candidate, roll_tool, rolled_poses
 from teachpath.motion.paths.tool_path import ToolPath, control_point_weights
 from teachpath.motion.refusals import describe_direction
@@ -96,7 +96,7 @@ class _MarginNearNode:
         wanted = rolled_poses(poses, roll, arm)
         if arm.model is not None:
             near, off = solve_near(wanted, np.repeat(here[None], len(wanted), axis=0), arm.model)
-            return self.margin(near, np.where(off <= CLOSED, 0.0, off))
+            return self.margin(near, np.where(off <= POSE_TOLERANCE, 0.0, off))
         solutions = inverse_kinematics(wanted, arm, previous_q4=float(here[3]))
         q = roll_tool(solutions.joints[:, self.candidate.branch.index], roll, arm)
         return self.margin(q + 2 * np.pi * np.round((here - q) / (2 * np.pi)), solutions.reach_excess[:, 0])

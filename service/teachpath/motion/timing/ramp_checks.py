@@ -20,7 +20,7 @@ PHASES: Final = 8  # moments of a control period, in which the limits are checke
 MAX_RAMP_PERIODS: Final = 5000  # of a ramp
 
 # What `check_ramp` answers.
-KEPT: Final = 0
+LIMITS_KEPT: Final = 0
 SPEED_BROKEN: Final = 1
 ACCELERATION_BROKEN: Final = 2
 JERK_BROKEN: Final = 3
@@ -36,7 +36,7 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
         dt: control period [s].
 
     Returns:
-        Which limit is broken first, or KEPT, and how long after the beginning [s].
+        Which limit is broken first, or LIMITS_KEPT, and how long after the beginning [s].
     """
     window, before, state, scale = sent.copy(), np.empty((3, table.shape[2])), np.empty(3), 1.0 / limits
     motion = np.empty_like(before)
@@ -56,7 +56,7 @@ def check_ramp(table: Array, step: float, ramp: Array, sent: Array, limits: Arra
             return ACCELERATION_BROKEN, k * dt
         if jerk > ACCEPTED_LIMIT_USE:
             return JERK_BROKEN, k * dt
-    return KEPT, 0.0
+    return LIMITS_KEPT, 0.0
 
 
 @kernel

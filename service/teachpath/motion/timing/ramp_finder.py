@@ -56,7 +56,7 @@ class RampFinder:
         """Write the motion at a constant rate from plan time `tau` [s] to `ramp`; tell whether it keeps all limits."""
         self.ramp[:] = (tau, rate, 0.0, 0.0, 0.0, 0.0, 0.0, rate)
         kept = ramp_checks.check_ramp(self._table, self._step, self.ramp, sent, self._limits, self._dt)
-        return kept[0] == ramp_checks.KEPT
+        return kept[0] == ramp_checks.LIMITS_KEPT
 
     def find_ramp(self, target: float, state: Array, sent: Array, within: float) -> bool:
         """Write a ramp of three phases that takes less than `within` [s] to `ramp`; return whether there is one.

@@ -9,7 +9,7 @@ import numpy as np
 
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.timing.kernels import kernel, shortest_ramp
-from teachpath.motion.timing.ramp_checks import JERK_BROKEN, KEPT, SPEED_BROKEN, check_ramp
+from teachpath.motion.timing.ramp_checks import JERK_BROKEN, LIMITS_KEPT, SPEED_BROKEN, check_ramp
 
 JERK_REDUCTION: Final = 0.6  # factor for the next trial after a broken jerk limit
 ACCELERATION_REDUCTION: Final = 0.7  # factor for the next trial after a broken acceleration limit
@@ -51,7 +51,7 @@ def find_ramp(
         broken, when = check_ramp(table, step, trial, sent, limits, dt)
         if broken == SPEED_BROKEN:
             return best
-        if broken == KEPT:
+        if broken == LIMITS_KEPT:
             best, within = peak, trial[3] + trial[4] + trial[5]
             ramp[:] = trial
             kept_a, kept_j = min(steepest, peak), hardest
@@ -98,7 +98,7 @@ def shorten_ramp(
             and trial[3] + trial[4] + trial[5] < within - MIN_TIME_SAVED
             and min(trial[3], trial[5]) >= 3.0 * dt  # shorter phases would break the jerk limit between setpoints
             and _largest_rate(trial) <= max_rate
-            and check_ramp(table, step, trial, sent, limits, dt)[0] == KEPT
+            and check_ramp(table, step, trial, sent, limits, dt)[0] == LIMITS_KEPT
         ):
             best, within, failed = peak, trial[3] + trial[4] + trial[5], 0
             ramp[:] = trial

@@ -25,7 +25,7 @@ SLOPE_STEP: Final = 0.2  # 1/s^2, of the difference that tells how much less it 
 RELEASE_EXCESS: Final = 3.0  # times the largest third derivative, from which a release is hopeless
 ENDING_TOLERANCE: Final = 1.05  # times the largest third derivative, in the last period; the check decides
 SPLITS: Final = 2  # halvings of the period in which the brake is released
-UNBOUNDED: Final = 1e7  # 1/s^3
+UNBOUNDED_JERK: Final = 1e7  # 1/s^3
 
 
 @kernel
@@ -99,7 +99,7 @@ def _brake(
     """
     last, rows = table.shape[0] - 1, states.shape[0]
     base, gain = np.empty(bounds.shape[1]), np.empty(bounds.shape[1])
-    floor[:] = -UNBOUNDED
+    floor[:] = -UNBOUNDED_JERK
     _bend(table, step, direction, states[0], bends[0])
     k = repairs = 0
     while k < rows - 1:
@@ -277,7 +277,7 @@ def _jerk_range(
     """
     rate = r + a * dt
     row, ahead = place_in_table(table, step, tau + direction * dt * (r + dt * a / 2.0))
-    lowest, highest = -UNBOUNDED, UNBOUNDED
+    lowest, highest = -UNBOUNDED_JERK, UNBOUNDED_JERK
     for i in range(len(bend)):
         two = table[row, 2, i] + ahead * table[row, 3, i]
         one = direction * (table[row, 1, i] + ahead * (table[row, 2, i] + ahead / 2.0 * table[row, 3, i]))
@@ -285,7 +285,7 @@ def _jerk_range(
         base[i], gain[i] = b, g
         most, change = share * bounds[0, i], share * bounds[1, i]
         low, high = max(-most, bend[i] - change), min(most, bend[i] + change)
-        inverse = 1.0 / g if abs(g) > 1e-9 else UNBOUNDED
+        inverse = 1.0 / g if abs(g) > 1e-9 else UNBOUNDED_JERK
         x, y = (low - b) * inverse, (high - b) * inverse
         lowest, highest = max(lowest, min(x, y)), min(highest, max(x, y))
     return lowest, highest

@@ -19,7 +19,7 @@ from teachpath.live.preview.page_modules import data_address, import_map
 from teachpath.offline.report.review import Review
 
 SHEETS: Final = ("vendor/uplot/uPlot.min.css", "style.css", "report/report.css")
-INSTEAD: Final = {"transport.js": "report/archive.js"}  # requests are answered from the package
+REPLACED_MODULES: Final = {"transport.js": "report/archive.js"}  # requests are answered from the package
 
 
 def write_package(review: Review, file: Path) -> int:
@@ -53,7 +53,7 @@ def package_html(review: Review) -> str:
         policy=_policy(nonce),
         icon=data_address(_text(web / "icon.svg"), "image/svg+xml"),
         sheets=[data_address(_text(web / sheet), "text/css") for sheet in SHEETS],
-        modules=import_map("report/report.js", lambda path: _text(web / path), instead=INSTEAD),
+        modules=import_map("report/report.js", lambda path: _text(web / path), instead=REPLACED_MODULES),
         viewer=data_address(_text(viewer / "dist" / "main.min.js"), "text/javascript"),
         licences=_licences(web, viewer),
         archive={path: to_document(record) for path, record in review.answers.items()},

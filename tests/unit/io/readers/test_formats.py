@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from teachpath.errors import UnusableRecording
 from teachpath.io.import_settings import ImportSettings
 from teachpath.io.readers.contract import FileMotions, OptionNeeded, Reader, ReadOptions
-from teachpath.io.readers.registry import GROUP, HOUSE, read_motions, readers, recognized
+from teachpath.io.readers.registry import BUILT_IN_READERS, GROUP, read_motions, readers, recognized
 from teachpath.records import Array
 
 ROOT = Path(__file__).parents[4]
@@ -237,8 +237,8 @@ def test_what_was_understood_is_told() -> None:
 
 
 def test_all_readers_of_the_house_are_members_of_the_group() -> None:
-    assert set(readers()) >= {reader.name for reader in HOUSE}
+    assert set(readers()) >= {reader.name for reader in BUILT_IN_READERS}
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"][GROUP]
     loaded = {name: EntryPoint(name, value, GROUP).load() for name, value in declared.items()}
-    assert loaded == {reader.name: reader for reader in HOUSE}
+    assert loaded == {reader.name: reader for reader in BUILT_IN_READERS}
     assert all(isinstance(reader, Reader) and reader.title for reader in readers().values())

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from teachpath.io.arm_models.arm_reader import read_arm
-from teachpath.motion.arm.serial_ik import CLOSED, all_solutions, limits_of, pose_errors, solve_near
+from teachpath.motion.arm.serial_ik import POSE_TOLERANCE, all_solutions, limits_of, pose_errors, solve_near
 from teachpath.motion.arm.serial_kinematics import serial_tool_pose
 
 
@@ -14,7 +14,7 @@ def test_every_solution_closes_within_the_limits(name: str) -> None:
         pose = serial_tool_pose(q, arm)
         found = all_solutions(pose, arm)
         assert len(found) >= 2
-        assert np.abs(pose_errors(np.repeat(pose[None], len(found), axis=0), found, arm)).max() <= CLOSED
+        assert np.abs(pose_errors(np.repeat(pose[None], len(found), axis=0), found, arm)).max() <= POSE_TOLERANCE
         assert np.all((found >= lower) & (found <= upper))
         for number, row in enumerate(found):
             others = np.delete(found, number, axis=0)
@@ -45,5 +45,5 @@ def test_a_half_turn_away_the_axis_is_found_all_the_same() -> None:
         for joint in (3, 5):
             turned = q + np.pi * (np.arange(6) == joint)  # by hardly a rounding more or less than a half turn
             found, off = solve_near(serial_tool_pose(turned, arm)[None], q[None], arm)
-            assert off[0] <= CLOSED
+            assert off[0] <= POSE_TOLERANCE
             assert np.abs(pose_errors(serial_tool_pose(found, arm), turned[None], arm)).max() <= 1e-8

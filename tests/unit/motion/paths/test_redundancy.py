@@ -7,7 +7,7 @@ import pytest
 
 from teachpath.io.arm_models.arm_reader import read_arm
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.arm.serial_ik import CLOSED
+from teachpath.motion.arm.serial_ik import POSE_TOLERANCE
 from teachpath.motion.arm.serial_kinematics import serial_tool_pose
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.motion.collision.collision_model import CollisionModel
@@ -52,9 +52,9 @@ def test_a_sheet_meets_its_poses_with_the_joint_at_its_angles_and_is_continuous(
     sheets = find_sheets([poses], ARM.model)  # type: ignore[arg-type]
     assert len(sheets) >= 3
     for sheet in sheets:
-        closed = sheet.off <= CLOSED
+        closed = sheet.off <= POSE_TOLERANCE
         every = np.repeat(poses[sheet.nodes][:, None], len(sheet.angles), axis=1)
-        assert misses(sheet.joints[closed], every[closed]) <= CLOSED
+        assert misses(sheet.joints[closed], every[closed]) <= POSE_TOLERANCE
         np.testing.assert_array_equal(sheet.joints[:, :, sheet.joint], np.tile(sheet.angles, (len(sheet.nodes), 1)))
         both = closed[1:] & closed[:-1]
         steps = np.abs(np.diff(sheet.joints, axis=0)).max(axis=2)
@@ -70,7 +70,7 @@ def test_a_candidate_meets_the_path_between_its_nodes_with_its_joint_on_the_spli
         redundancy = candidate.branch.redundancy
         assert redundancy is not None
         q = configurations(PATH, candidate, u)
-        assert misses(q, rolled_poses(PATH.poses(u), candidate.roll(u), ARM)) <= CLOSED
+        assert misses(q, rolled_poses(PATH.poses(u), candidate.roll(u), ARM)) <= POSE_TOLERANCE
         np.testing.assert_allclose(q[:, redundancy.sheet.joint], redundancy.angle(u), atol=1e-12)
         assert np.all((q >= ARM.limits.lower) & (q <= ARM.limits.upper))
         assert np.abs(np.diff(q, 3, axis=0)).max() < 1e-3  # no kink

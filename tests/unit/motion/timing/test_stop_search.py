@@ -6,7 +6,7 @@ from teachpath.motion.execution.governor import Governor
 from teachpath.motion.timing.joint_moves import straight_move
 from teachpath.motion.timing.kernels import evaluate_table
 from teachpath.motion.timing.limit_margins import limit_uses
-from teachpath.motion.timing.ramp_checks import KEPT, PHASES, check_ramp, check_states
+from teachpath.motion.timing.ramp_checks import LIMITS_KEPT, PHASES, check_ramp, check_states
 from teachpath.motion.timing.stop_search import find_stop
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
@@ -87,11 +87,11 @@ def test_states_that_are_no_numbers_are_refused(line: TimedTrajectory, broken: f
         bad[row, 0] = broken
         assert not keeps(bad)
     sound = np.array([tau, 1.0, 0.0, 0.2, 0.1, 0.2, -0.2, 0.988])
-    assert check_ramp(line.table, line.step, sound, sent, WINDOW, DT)[0] == KEPT
+    assert check_ramp(line.table, line.step, sound, sent, WINDOW, DT)[0] == LIMITS_KEPT
     for place in range(8):
         ramp = sound.copy()
         ramp[place] = broken
-        assert check_ramp(line.table, line.step, ramp, sent, WINDOW, DT)[0] != KEPT
+        assert check_ramp(line.table, line.step, ramp, sent, WINDOW, DT)[0] != LIMITS_KEPT
     for column in range(3):
         state = np.array([tau, 1.0, 0.0])
         state[column] = broken
