@@ -20,7 +20,7 @@ from xdist.scheduler import LoadScopeScheduling
 from teachpath.commands.serving import PRELOADED
 from teachpath.process_server import CONTEXT
 from tests.object_storage import ObjectServer, serving_objects
-from tests.postgres import MISSING, Server, find_programs, serving
+from tests.postgres import NO_POSTGRESQL, Server, find_programs, serving
 
 # No example fails because the machine was busy, and every run has the same ones: what fails once, fails again.
 settings.register_profile("teachpath", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
@@ -33,7 +33,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 CONTEXT.set_forkserver_preload(list(PRELOADED))
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
-ABSENT = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"
+NO_CHROMIUM = "no Chromium to look at the page with; get it with: sudo apt-get install chromium"
 # The logins of the stations that tests start lie here, not among this user's own.
 STATE = tempfile.TemporaryDirectory(prefix="teachpath-tests-")
 os.environ["XDG_STATE_HOME"] = STATE.name
@@ -43,16 +43,16 @@ CHROMIUM = """#!/bin/sh
 [ "$(id -u)" = 0 ] && exec nice -n 5 setpriv --bounding-set=-sys_nice --inh-caps=-sys_nice {0} "$@"
 exec nice -n 5 {0} "$@"
 """
-REQUIRED = "TEACHPATH_REQUIRE_BROWSER"  # set where the browser tests must run: without a browser they fail
+REQUIRED_VARIABLE = "TEACHPATH_REQUIRE_BROWSER"  # set where the browser tests must run: without a browser they fail
 
 
 def find_chromium() -> str:
     """Where Chromium is; without one the test is left out, or fails where browser tests are asked for."""
     found = next((path for name in NAMES if (path := shutil.which(name))), None)
     if found is None:
-        if os.environ.get(REQUIRED):
-            pytest.fail(f"{ABSENT} (or unset {REQUIRED})")
-        pytest.skip(ABSENT)
+        if os.environ.get(REQUIRED_VARIABLE):
+            pytest.fail(f"{NO_CHROMIUM} (or unset {REQUIRED_VARIABLE})")
+        pytest.skip(NO_CHROMIUM)
     return found
 
 
@@ -94,7 +94,7 @@ def objects(monkeypatch: pytest.MonkeyPatch) -> Iterator[ObjectServer]:
 def postgres() -> Iterator[Server]:
     """A PostgreSQL server of the tests' own."""
     if find_programs() is None or importlib.util.find_spec("psycopg") is None:
-        pytest.skip(MISSING)
+        pytest.skip(NO_POSTGRESQL)
     with serving() as server:
         yield server
 
@@ -104,24 +104,24 @@ def system_modules(*names: str) -> set[str]:
 
 
 # System tests that draw pages, and move an arm at most where no time is judged.
-DRAWING = system_modules(
+DRAWING_MODULES = system_modules(
     "behind_nginx", "camera", "editing", "import_page", "late_answers", "other_machine", "page", "review_package",
     "showing", "sign_in", "view",
 )  # fmt: skip
 # System tests that do neither: each module may run beside any other.
-UNDEMANDING = system_modules(
+UNDEMANDING_MODULES = system_modules(
     "broken_storage", "crashes", "cut_router", "devices", "disk", "evaluate", "hands_free", "help", "hostile", "kill",
     "lines", "other_user", "recording", "several_machines", "station", "tracker_check", "wheel",
 )  # fmt: skip
-LONGEST = ("moving", "drawing")
+LONGEST_GROUPS = ("moving", "drawing")
 
 
 def scope(nodeid: str) -> str:
     """What one worker runs in one go: all system tests that move the arm, all that draw pages, or another module."""
     module = nodeid.partition("::")[0]
-    if not module.startswith("tests/system/") or module in UNDEMANDING:
+    if not module.startswith("tests/system/") or module in UNDEMANDING_MODULES:
         return module
-    return "drawing" if module in DRAWING else "moving"
+    return "drawing" if module in DRAWING_MODULES else "moving"
 
 
 class SystemBesideTheRest(LoadScopeScheduling):
@@ -133,7 +133,7 @@ class SystemBesideTheRest(LoadScopeScheduling):
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with what takes longest."""
-    order = {name: number for number, name in enumerate(LONGEST)}
+    order = {name: number for number, name in enumerate(LONGEST_GROUPS)}
     items.sort(key=lambda item: order.get(scope(item.nodeid), len(order)))
 
 
@@ -146,7 +146,7 @@ def pytest_sessionfinish(session: pytest.Session) -> Generator[None, object, obj
     result = yield
     terminal = session.config.pluginmanager.get_plugin("terminalreporter")
     skipped = terminal.stats.get("skipped", []) if terminal else []
-    left_out = [report for report in skipped if ABSENT in str(report.longrepr)]
+    left_out = [report for report in skipped if NO_CHROMIUM in str(report.longrepr)]
     if left_out:
-        terminal.write_line(f"browser tests left out: {len(left_out)}, {ABSENT}", yellow=True)
+        terminal.write_line(f"browser tests left out: {len(left_out)}, {NO_CHROMIUM}", yellow=True)
     return result

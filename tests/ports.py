@@ -11,7 +11,7 @@ import random
 import socket
 from contextlib import suppress
 
-FIRST, COUNT = 12_000, 4_000  # of one process of a run; the system's own begin at 32768
+FIRST_PORT, COUNT = 12_000, 4_000  # of one process of a run; the system's own begin at 32768
 PROCESSES = 5
 _numbers = itertools.count(random.SystemRandom().randrange(COUNT))  # other runs on this machine begin elsewhere
 
@@ -20,7 +20,7 @@ def free_port() -> int:
     """Return a TCP port of loopback that nobody listens on now, and that no test chooses again."""
     process = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")) % PROCESSES
     for number in itertools.islice(_numbers, COUNT):
-        port = FIRST + process * COUNT + number % COUNT
+        port = FIRST_PORT + process * COUNT + number % COUNT
         with suppress(OSError), socket.create_server(("127.0.0.1", port)):
             return port
     raise AssertionError(f"somebody listens on all of {COUNT} ports")

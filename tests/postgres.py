@@ -20,7 +20,9 @@ from sqlalchemy import create_engine, make_url, text
 from teachpath.io.store.engine import open_engine
 from tests.waiting import HANG
 
-MISSING = "PostgreSQL is not there; get it with: apt-get install postgresql, and pip install 'teachpath[postgres]'"
+NO_POSTGRESQL = (
+    "PostgreSQL is not there; get it with: apt-get install postgresql, and pip install 'teachpath[postgres]'"
+)
 USER, TEMPLATE = "teachpath", "with_tables"
 ROOM = 4 * 2**30  # bytes that must be free in memory for its files
 

@@ -14,8 +14,8 @@ from teachpath.motion.timing import kernels, ramp_checks
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 from tests.bench.report import Figure, against
 
-ALLOWED = 0.1  # s
-EXACT = 1e-9  # s
+ALLOWED_SHARE = 0.1  # s
+ROUNDING = 1e-9  # s
 PERIODS = 1200  # of a run
 SLOPES = np.geomspace(0.05, 2000.0, 50)  # 1/s^2, of the ramps on the grid
 JERKS = np.geomspace(0.5, 50_000.0, 50)  # 1/s^3
@@ -34,7 +34,7 @@ class Answers:
     @property
     def late(self) -> int:
         """How many took longer than allowed."""
-        return sum(wait > ALLOWED + EXACT for wait in self.waits)
+        return sum(wait > ALLOWED_SHARE + ROUNDING for wait in self.waits)
 
 
 def measure(tracks: list[TimedTrajectory], dt: float, *, runs: int) -> list[Figure]:
@@ -48,7 +48,11 @@ def measure(tracks: list[TimedTrajectory], dt: float, *, runs: int) -> list[Figu
         in_time = 100.0 * (1.0 - found.late / len(found.waits))
         figures += [
             against(
-                f"all paths: answer to {len(found.waits):,} {what}", found.waits, "s", name="allowed", value=ALLOWED
+                f"all paths: answer to {len(found.waits):,} {what}",
+                found.waits,
+                "s",
+                name="allowed",
+                value=ALLOWED_SHARE,
             ),
             Figure(f"  in time; {found.missed} of {found.late} later ones could be had sooner", (in_time,), "%"),
         ]
@@ -82,8 +86,8 @@ def _account(track: TimedTrajectory, dt: float, wish: float, waiting: list[State
     if not waiting:
         return
     found.waits.append(dt * len(waiting))
-    if found.waits[-1] > ALLOWED + EXACT:
-        in_time = waiting[: round(ALLOWED / dt)]
+    if found.waits[-1] > ALLOWED_SHARE + ROUNDING:
+        in_time = waiting[: round(ALLOWED_SHARE / dt)]
         found.missed += any(_possible(track, dt, wish, *state) for state in in_time)
 
 

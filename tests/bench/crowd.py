@@ -9,10 +9,10 @@ from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
 
 KEYS = Keys("bench")
-RECEIVED = "bench/received"  # query: its answer comes after all that was put before it
+RECEIVED_KEY = "bench/received"  # query: its answer comes after all that was put before it
 RATE = 50.0  # [Hz]
 REACH, RETURN = 0.15, (0.45, 0.85)  # shares of the time at which a hand closes, and the hands open in turn
-OPEN, CLOSED = [0.1] * 22, [0.9] * 22
+OPEN_HAND, CLOSED_HAND = [0.1] * 22, [0.9] * 22
 
 
 def name(number: int) -> str:
@@ -37,7 +37,7 @@ def main(endpoint: str, first: int, count: int, seconds: float) -> int:
                 message.position.y = 0.3 * math.sin(2.0 * math.pi * min(share, opens))
                 message.device_ns = time.time_ns()
                 publisher.put(message.SerializeToString())
-        link.ask(RECEIVED, timeout=120.0)  # Zenoh loses what a session that closes still has under way
+        link.ask(RECEIVED_KEY, timeout=120.0)  # Zenoh loses what a session that closes still has under way
     return samples
 
 
@@ -46,7 +46,7 @@ def _opens(turn: float) -> float:
 
 
 def _message(closed: bool) -> tracker_pb2.HandSample:
-    message = tracker_pb2.HandSample(tracked=True, flexions=CLOSED if closed else OPEN)
+    message = tracker_pb2.HandSample(tracked=True, flexions=CLOSED_HAND if closed else OPEN_HAND)
     message.orientation.w = 1.0
     message.position.x, message.position.z = 0.5, 0.6
     return message

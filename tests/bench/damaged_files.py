@@ -32,7 +32,7 @@ from tests.unit.io.readers.test_hdf5 import markers, robomimic
 from tests.unit.io.readers.test_lerobot import COLUMNS, NAME, frames
 
 Result = tuple[int, int, float, float, str]  # read, refused, slowest [s], memory [MB], what went wrong
-LONGEST, MOST_MEMORY = 2.0, 500.0  # [s], [MB]
+TIME_LIMIT, MOST_MEMORY = 2.0, 500.0  # [s], [MB]
 HANG = 30  # [s]
 
 
@@ -53,7 +53,7 @@ def main(count: int, chosen: list[str]) -> int:
         if not chosen or label in chosen:
             read, refused, slowest, memory, fault = apart(partial(_try, kind, name, content, count))
             print(f"{label:14} {read:6} {refused:8} {slowest:12.2f} {memory:12.0f} {fault}", flush=True)
-            good &= not fault and slowest <= LONGEST and memory <= MOST_MEMORY
+            good &= not fault and slowest <= TIME_LIMIT and memory <= MOST_MEMORY
     return 0 if good else 1
 
 

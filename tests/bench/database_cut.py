@@ -24,7 +24,7 @@ from tests.unit.recorder.recorders import Bench
 from tests.unit.recording.hands import demonstration
 from tests.waiting import wait_until
 
-SHOWN = 110  # samples of a demonstration
+SAMPLE_COUNT = 110  # samples of a demonstration
 TASK = "lift"
 JOBS, REPORTS = 8, 3  # that each service is asked for, and what each of them reports
 
@@ -68,7 +68,7 @@ class Member:
 
     def show(self) -> None:
         """Show the task once more."""
-        self.bench.send(demonstration(1 + self.shown * SHOWN))
+        self.bench.send(demonstration(1 + self.shown * SAMPLE_COUNT))
         self.shown += 1
 
     def submit(self) -> list[Job]:
@@ -118,7 +118,7 @@ def cut(server: Server, folder: Path, seconds: float) -> Outcome:
         ended = lambda: all(near.store.job(job.id).finished_ns for job in jobs)  # noqa: E731
         wait_until(ended, "every job has ended")
         for member in members:
-            member.bench.received(member.shown * SHOWN)
+            member.bench.received(member.shown * SAMPLE_COUNT)
             wait_until(lambda member=member: not member.bench.recorder.faults(), "every take has its row")
         made = near.store.demonstrations(TASK)
         return Outcome(

@@ -14,8 +14,8 @@ from teachpath.motion.arm.limits import MotionLimits
 
 PIECES = 120
 LEVELS = 1000  # of x
-LOW, HIGH = 0.4, 1.75  # range of x, times the duration squared
-STEEPEST = 22.0  # largest |x'|, likewise
+LOWEST_RATE, HIGHEST_RATE = 0.4, 1.75  # range of x, times the duration squared
+STEEPEST_SLOPE = 22.0  # largest |x'|, likewise
 
 
 def best_duration(path: JointPath, limits: MotionLimits, duration: float) -> float:
@@ -27,9 +27,9 @@ def best_duration(path: JointPath, limits: MotionLimits, duration: float) -> flo
         duration: of a plan, for the scale of the grid.
     """
     step = 1.0 / PIECES
-    grain = (HIGH - LOW) / LEVELS  # x changes by half a quantum of x'' over a step
+    grain = (HIGHEST_RATE - LOWEST_RATE) / LEVELS  # x changes by half a quantum of x'' over a step
     quantum = 2.0 * grain / step**2
-    half = int(STEEPEST / (quantum * step))
+    half = int(STEEPEST_SLOPE / (quantum * step))
     nodes = np.linspace(0.0, 1.0, PIECES + 1)
     one, two, three = (path(nodes, k)[:, :6] / duration**k for k in (1, 2, 3))
     v, a, j = limits.speed, limits.acceleration, limits.jerk
@@ -44,7 +44,7 @@ def _search(ceiling, a2, a1, j3, j2, j1, step, grain, quantum, half):  # type: i
     for k in range(len(ceiling) - 2, -1, -1):
         before = np.full((LEVELS + 1, slopes), np.inf)
         for level in range(LEVELS + 1):
-            x = LOW + level * grain
+            x = LOWEST_RATE + level * grain
             if x > ceiling[k]:
                 continue
             for index in range(slopes):
@@ -58,7 +58,7 @@ def _search(ceiling, a2, a1, j3, j2, j1, step, grain, quantum, half):  # type: i
                     there = level + 2 * (index - half) + push
                     if there < 0 or there > LEVELS or after[there, index + push] == np.inf:
                         continue
-                    y, bend = LOW + there * grain, push * quantum
+                    y, bend = LOWEST_RATE + there * grain, push * quantum
                     if _kept(y, slope + bend * step, bend, j3[k + 1], j2[k + 1], j1[k + 1]):
                         middle = x + slope * step / 2 + bend * step**2 / 8
                         lasting = step * (1 / np.sqrt(x) + 4 / np.sqrt(middle) + 1 / np.sqrt(y)) / 6

@@ -6,15 +6,15 @@ from pathlib import Path
 
 from tests.bench.report import Figure, against
 
-SETTLED = 3.0  # [s] until a station that has just begun is at rest
+SETTLING_TIME = 3.0  # [s] until a station that has just begun is at rest
 SECONDS = 10.0  # [s] of each measurement
 REPEATS = 2
-PARTS = ("executor", "simulator")
+PROCESS_NAMES = ("executor", "simulator")
 
 
 def measure() -> list[Figure]:
     """Return the share of a core that this process (it serves) and each of its children use at rest."""
-    time.sleep(SETTLED)
+    time.sleep(SETTLING_TIME)
     processes = {"service": os.getpid(), **_children()}
     shares: dict[str, list[float]] = {name: [] for name in processes}
     for _ in range(REPEATS):
@@ -39,7 +39,9 @@ def _children() -> dict[str, int]:
         except OSError:
             continue  # it has just ended
     return {
-        name: pid for pid, name in names.items() if name in PARTS and parents.get(parents.get(pid, 0)) == os.getpid()
+        name: pid
+        for pid, name in names.items()
+        if name in PROCESS_NAMES and parents.get(parents.get(pid, 0)) == os.getpid()
     }
 
 

@@ -27,7 +27,7 @@ REPORTS = 15  # of each job, 20 ms apart
 # Of the time that a service takes to start, between two kills, at least and at most: the process of its jobs takes as
 # long again, however busy the machine is, and one of four lives for four kills.
 PAUSE = 0.1, 1.0
-STUCK = 2 * DEAD_AFTER + HANG  # [s] without any job that ends
+STUCK_TIMEOUT = 2 * DEAD_AFTER + HANG  # [s] without any job that ends
 
 
 class Program:
@@ -75,8 +75,8 @@ def kill_until_done(store: Store, programs: list[Program], chance: random.Random
     while unfinished := store.jobs(unfinished=True):
         if len(unfinished) < left:
             left, since = len(unfinished), time.monotonic()
-        elif time.monotonic() - since > STUCK:
-            sys.exit(f"no job has ended for {STUCK:g} s, {left} are left: {unfinished[:3]}")
+        elif time.monotonic() - since > STUCK_TIMEOUT:
+            sys.exit(f"no job has ended for {STUCK_TIMEOUT:g} s, {left} are left: {unfinished[:3]}")
         time.sleep(pause * chance.uniform(*PAUSE))
         if started := [program for program in programs if program.has_started()]:
             chosen = chance.choice(started)

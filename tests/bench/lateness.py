@@ -23,7 +23,7 @@ from tests.unit.executor.played_setpoints import ARM, Arrivals, MovedBench, Play
 ASKED_OFF: Final = 1e-5  # m off the path, that the player asks of the arm
 DONE_OFF: Final = 3e-4  # m off the path, that the arm does
 SLEEPS: Final = (0.02, 0.5)  # s, of a stopped executor
-LOST: Final = 0.05  # share of setpoints
+LOST_SHARE: Final = 0.05  # share of setpoints
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def _slept(made: Plan, way: np.ndarray, cycles: np.ndarray, rng: np.random.Gener
 
 def _lossy(rng: np.random.Generator) -> Arrivals:
     def arrivals(cycle: int) -> list[float]:
-        if rng.random() < LOST:
+        if rng.random() < LOST_SHARE:
             return []
         late = [float(rng.uniform(0.0, 0.012))] if rng.random() < 0.95 else [float(rng.uniform(0.05, 0.3))]
         return late + ([late[0] + 0.01] if rng.random() < 0.1 else [])

@@ -12,8 +12,8 @@ from tests.bench.report import Figure, against
 from tests.system.processes import Service
 from tests.waiting import wait_until
 
-SHOWN = 12  # demonstrations of the synthetic hand
-LATER = 5  # jobs after the first one of each start
+DEMONSTRATION_COUNT = 12  # demonstrations of the synthetic hand
+LATER_JOBS = 5  # jobs after the first one of each start
 POLL = 0.01  # [s]
 FIRST_LIMIT, LATER_LIMIT = 1.0, 0.2  # [s]
 
@@ -35,7 +35,8 @@ def measure(*, starts: int) -> list[Figure]:
             with Service(data) as service:
                 beginnings.append(time.perf_counter() - began)
                 taken = [
-                    timed_job(service.station, partial(_learn, service.station), poll=POLL)[1] for _ in range(1 + LATER)
+                    timed_job(service.station, partial(_learn, service.station), poll=POLL)[1]
+                    for _ in range(1 + LATER_JOBS)
                 ]
                 first.append(taken[0])
                 later += taken[1:]
@@ -47,7 +48,7 @@ def measure(*, starts: int) -> list[Figure]:
 
 
 def _is_shown(station: Station) -> bool:
-    return len(station.demonstrations("demo")) == SHOWN
+    return len(station.demonstrations("demo")) == DEMONSTRATION_COUNT
 
 
 def _learn(station: Station) -> Job:

@@ -26,9 +26,9 @@ from tests.bench.report import Figure, against
 
 BOUND = 0.005  # m
 DEGREE = 3
-MOST = 60  # control points
+MAX_CONTROL_POINTS = 60  # control points
 ITERATIONS = 8  # of Baum-Welch, as in ours
-SEEN = 2001  # samples of a peer's curve that stand for it
+SEEN_POINTS = 2001  # samples of a peer's curve that stand for it
 
 
 def fits(*, repeats: int) -> list[Figure]:
@@ -38,8 +38,8 @@ def fits(*, repeats: int) -> list[Figure]:
     is not counted.
     """
     points = noisy(300)
-    ours = approximate(points, BOUND, degree=DEGREE, most=MOST)
-    seconds = timed(lambda: approximate(points, BOUND, degree=DEGREE, most=MOST), repeats)
+    ours = approximate(points, BOUND, degree=DEGREE, most=MAX_CONTROL_POINTS)
+    seconds = timed(lambda: approximate(points, BOUND, degree=DEGREE, most=MAX_CONTROL_POINTS), repeats)
     figures = [
         against("fit of 300 noisy points within 5 mm", seconds, "s", name="limit", value=0.0015),
         against("  its control points", [float(len(ours.curve.weights))], "", name="limit", value=13.0),
@@ -53,14 +53,16 @@ def fits(*, repeats: int) -> list[Figure]:
     ]
     for name, made in peers(points).items():
         if made is None:
-            figures.append(Figure(f"  {name}: bound not kept with {MOST} control points", (float("nan"),), "s"))
+            figures.append(
+                Figure(f"  {name}: bound not kept with {MAX_CONTROL_POINTS} control points", (float("nan"),), "s")
+            )
             continue
         call, count = made
         own = timed(call, 1 if "geomdl" in name else repeats)
         figures.append(Figure(f"  {name}, {count} control points", tuple(own), "s", *beside(seconds, own)))
     many = noisy(30_000)
-    slow = timed(lambda: approximate(many, BOUND, degree=DEGREE, most=MOST), max(repeats // 2, 1))
-    count = len(approximate(many, BOUND, degree=DEGREE, most=MOST).curve.weights)
+    slow = timed(lambda: approximate(many, BOUND, degree=DEGREE, most=MAX_CONTROL_POINTS), max(repeats // 2, 1))
+    count = len(approximate(many, BOUND, degree=DEGREE, most=MAX_CONTROL_POINTS).curve.weights)
     figures.append(against(f"fit of 30,000 noisy points, {count} control points", slow, "s", name="limit", value=1.0))
     return figures
 
@@ -76,9 +78,9 @@ def peers(points: Array) -> dict[str, tuple[Callable[[], object], int] | None]:
         return make_lsq_spline(u, points, knots, DEGREE)
 
     def keeps(curve: Callable[[Array], Array]) -> bool:
-        return bool(cKDTree(curve(np.linspace(0, 1, SEEN))).query(points)[0].max() <= BOUND)
+        return bool(cKDTree(curve(np.linspace(0, 1, SEEN_POINTS))).query(points)[0].max() <= BOUND)
 
-    count = next((n for n in range(DEGREE + 1, MOST + 1) if keeps(lsq(n))), None)
+    count = next((n for n in range(DEGREE + 1, MAX_CONTROL_POINTS + 1) if keeps(lsq(n))), None)
     found["scipy make_lsq_spline, even knots"] = count and (lambda: lsq(count), count)
     for s in np.geomspace(len(points) * BOUND**2, len(points) * 1e-7, 60):
         tck = splprep(points.T, u=u, s=s, k=DEGREE)[0]
@@ -87,9 +89,9 @@ def peers(points: Array) -> dict[str, tuple[Callable[[], object], int] | None]:
             found["scipy splprep, smoothing"] = (lambda s=s: splprep(points.T, u=u, s=s, k=DEGREE), size)
             break
     listed = points.tolist()
-    for size in range(count or MOST, MOST + 1, 2):
+    for size in range(count or MAX_CONTROL_POINTS, MAX_CONTROL_POINTS + 1, 2):
         twin = geomdl_fitting.approximate_curve(listed, DEGREE, ctrlpts_size=size)
-        twin.sample_size = SEEN
+        twin.sample_size = SEEN_POINTS
         if cKDTree(np.array(twin.evalpts)).query(points)[0].max() <= BOUND:
             found["geomdl approximate_curve"] = (
                 lambda size=size: geomdl_fitting.approximate_curve(listed, DEGREE, ctrlpts_size=size), size
@@ -135,7 +137,7 @@ def usual(trajectories: dict[str, Trajectory]) -> tuple[int, int]:
             rest = [sequence for i, sequence in enumerate(sequences) if i != left]
             broken += not _scored(rest, sequences[left], COURSE_STATES)
         course = np.mean([at_equal_arc_length(paths[i], 200) for i in members], axis=0)
-        for count in range(DEGREE + 1, MOST + 1):
+        for count in range(DEGREE + 1, MAX_CONTROL_POINTS + 1):
             twin = geomdl_fitting.approximate_curve(course.tolist(), DEGREE, ctrlpts_size=count)
             twin.sample_size = 400
             if cKDTree(np.array(twin.evalpts)).query(course)[0].max() <= BOUND:

@@ -145,7 +145,7 @@ def whole(count: int) -> dict[str, float]:
     """Measure all of learning: clustering, selection and fitting of three ways."""
     rng = np.random.default_rng(1)
     shown = {
-        str(i): synthetic.demonstration(rng, synthetic.WAYS[i % 3], duration=(POINTS - 1) * synthetic.PERIOD)
+        str(i): synthetic.demonstration(rng, synthetic.WAY_POINTS[i % 3], duration=(POINTS - 1) * synthetic.PERIOD)
         for i in range(count)
     }
     learn(dict(list(shown.items())[: MAX_SCIPY_DEMONSTRATIONS + 10]), LearningSettings())  # compiles

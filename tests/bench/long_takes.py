@@ -23,7 +23,7 @@ from tests.bench.report import Figure
 SECONDS = 1800
 TRACKER = "glove"
 KEYS = Keys("bench")
-CLOSED = 0.9  # flexion
+CLOSED_FLEXION = 0.9  # flexion
 POINTS = 2000  # of the trajectory that a page asks for
 LONGEST_STOP, LONGEST_ANSWER = 1000.0, 300.0  # [ms] that are aimed at
 
@@ -75,5 +75,5 @@ def _payloads() -> Iterator[bytes]:
     hand, start_ns = list(experiment_1()), time.time_ns()
     for i in range(round(SECONDS * RATE)):
         reading = hand[i % len(hand)]
-        closed = replace(reading, time=i / RATE, flexions=(CLOSED,) * len(reading.flexions))
+        closed = replace(reading, time=i / RATE, flexions=(CLOSED_FLEXION,) * len(reading.flexions))
         yield closed.message(i + 1, start_ns).SerializeToString()

@@ -21,7 +21,7 @@ from tests.plan_checker.refusal_judge import Refusal, RefusalJudge
 
 HEIGHT = 0.5  # [m] of the table, on which the arm stands
 RATE = 250.0  # [Hz]
-ASKED = {"six-axis": 0.3, "seven-axis": 1.0}  # [s] of a processor, of planning a metre
+PATH_LENGTHS = {"six-axis": 0.3, "seven-axis": 1.0}  # [s] of a processor, of planning a metre
 
 
 def measure(example: str, *, count: int) -> list[Figure]:
@@ -45,7 +45,7 @@ def measure(example: str, *, count: int) -> list[Figure]:
             [took / made.lengths[-1] for made, took in plans],
             "s",
             name="asked",
-            value=ASKED[example],
+            value=PATH_LENGTHS[example],
         ),
         *([Figure("finding that there is no plan, CPU", refused, "s")] if refused else []),
         *[Figure(f"refused: {kind}, by MuJoCo", (float(refusals.count(kind)),), "paths") for kind in Refusal],
@@ -73,5 +73,5 @@ def _largest_use(made: Plan, arm: Arm, model: SerialArm) -> float:
 
 
 if __name__ == "__main__":
-    for example in ASKED:
+    for example in PATH_LENGTHS:
         print_report(f"Arms from models, planned: {example}", measure(example, count=20))

@@ -12,9 +12,9 @@ from teachpath.motion.timing.timed_trajectory import TimedTrajectory
 
 PIECES = 30
 PROGRAMS = 10  # per duration
-SHORTER = (0.8, 0.9, 0.95, 0.98, 0.99, 0.995)  # factors of the duration that are tried, the most daring first
-KEPT = 5e-3  # violation that counts as none
-FURTHEST = 0.01  # s, that tau may move in one program
+SHORTER_DURATIONS = (0.8, 0.9, 0.95, 0.98, 0.99, 0.995)  # factors of the duration that are tried, the most daring first
+KEPT_GAIN = 5e-3  # violation that counts as none
+MAX_SHIFT = 0.01  # s, that tau may move in one program
 
 
 def shortest_stop(track: TimedTrajectory, tau: float, rates: list[float], dt: float) -> float:
@@ -30,7 +30,7 @@ def shortest_stop(track: TimedTrajectory, tau: float, rates: list[float], dt: fl
     step = duration / PIECES
     ends = np.interp(step * np.arange(1, PIECES + 1), dt * np.arange(len(rates) + 1), [1.0, *rates])
     pieces = np.linalg.lstsq(_responses(step)[1][1], ends - 1.0, rcond=1e-3)[0] * duration**2
-    for factor in SHORTER:
+    for factor in SHORTER_DURATIONS:
         while (found := _stop(track, tau, factor * duration, pieces)) is not None:
             duration, pieces = factor * duration, found
     return duration
@@ -48,7 +48,7 @@ def _stop(track: TimedTrajectory, tau: float, duration: float, start: np.ndarray
     for _ in range(PROGRAMS):
         state = tau + t + gains[0] @ pieces, 1.0 + gains[1] @ pieces, gains[2] @ pieces
         matrix, values = _linearised(track, *state, pieces, gains)
-        if np.abs(values).max() <= 1.0 + KEPT and state[1].min() > -1e-6:
+        if np.abs(values).max() <= 1.0 + KEPT_GAIN and state[1].min() > -1e-6:
             return pieces * duration**2
         answer = linprog(
             np.append(np.zeros(PIECES), 1.0),
@@ -56,7 +56,7 @@ def _stop(track: TimedTrajectory, tau: float, duration: float, start: np.ndarray
                 [matrix, -np.ones((len(matrix), 1))], [-matrix, -np.ones((len(matrix), 1))],
                 [np.concatenate([gains[0], -gains[0], -gains[1], gains[2], -gains[2]]), np.zeros((5 * PIECES, 1))],
             ]),
-            b_ub=np.concatenate([1 - values, 1 + values, np.full(2 * PIECES, FURTHEST), state[1], slopes, slopes]),
+            b_ub=np.concatenate([1 - values, 1 + values, np.full(2 * PIECES, MAX_SHIFT), state[1], slopes, slopes]),
             A_eq=np.column_stack([final, np.zeros(2)]), b_eq=np.zeros(2),
             bounds=[(None, None)] * PIECES + [(0.0, None)],
         )  # fmt: skip

@@ -12,7 +12,7 @@ from tests.bench.motion import show
 from tests.bench.page import BROWSERS, FLAGS
 from tests.bench.report import Figure, against, print_report
 
-LARGEST = 600.0  # [kB] asked for
+MAX_KB = 600.0  # [kB] asked for
 KINDS = {"/web/": "modules and style sheets", "/vendor/": "the viewer", "/api/": "REST"}
 
 
@@ -72,7 +72,7 @@ def _loaded(browser: str, url: str) -> tuple[Counter[str], Counter[str]]:
 def _figures(sizes: Counter[str], requests: Counter[str]) -> list[Figure]:
     total = sum(sizes.values()) / 1000
     return [
-        against("the page, until its scene is drawn", [total], "kB", name="asked for", value=LARGEST),
+        against("the page, until its scene is drawn", [total], "kB", name="asked for", value=MAX_KB),
         *(Figure(f"  {kind}", (size / 1000,), "kB") for kind, size in sizes.most_common()),
         Figure("requests", (float(sum(requests.values())),), "requests"),
     ]

@@ -20,12 +20,12 @@ from tests.plan_checker.exhaustive_search import search
 from tests.plan_checker.random_cases import random_case, streamed
 
 DT = 0.004
-ALLOWED = 1.0 + 1e-9
-OFF = 1e-4  # m
-SAMPLED = 0.001  # m, by which sampled surfaces may seem nearer than they are
+ALLOWED_LIMIT_USE = 1.0 + 1e-9
+TOLERANCE = 1e-4  # m
+SAMPLING_PERIOD = 0.001  # m, by which sampled surfaces may seem nearer than they are
 
 
-LONG = 0.5  # m, of a path whose planning is also told by the metre
+LONG_PATH = 0.5  # m, of a path whose planning is also told by the metre
 KINDS = {
     "reach": "wrist centre",
     "a move to or from the path": "on the way|above the",
@@ -52,7 +52,7 @@ class Case:
         """Whether the plan breaks a limit, leaves the path or is nearer to something than certified."""
         if self.verdict is None:
             return False
-        return max(self.uses) > ALLOWED or self.verdict.off_path > OFF or self.tight > SAMPLED
+        return max(self.uses) > ALLOWED_LIMIT_USE or self.verdict.off_path > TOLERANCE or self.tight > SAMPLING_PERIOD
 
     @property
     def uses(self) -> list[float]:
@@ -92,7 +92,7 @@ def measure(*, count: int) -> list[Figure]:
     refused = Counter(kind(each.refusal) for each in cases if each.refusal)
     kinds = ", ".join(f"{name} {number}" for name, number in sorted(refused.items())) or "none"
     worst = np.max([each.uses for each in planned], axis=0)
-    per_metre = [each.seconds / each.length for each in planned if each.length >= LONG]
+    per_metre = [each.seconds / each.length for each in planned if each.length >= LONG_PATH]
     wrong = float(sum(not each.founded for each in cases))
     off = max(each.verdict.off_path for each in planned if each.verdict)
     return [
@@ -103,10 +103,12 @@ def measure(*, count: int) -> list[Figure]:
             against(f"largest use of {name}", [float(use)], "", name="limit", value=1.0)
             for name, use in zip(("position", "speed", "acceleration", "jerk"), worst, strict=True)
         ],
-        against("farthest from the curve", [1e6 * off], "um", name="allowed", value=1e6 * OFF),
+        against("farthest from the curve", [1e6 * off], "um", name="allowed", value=1e6 * TOLERANCE),
         Figure("certified clearance beyond the sampled one, at most", (1e3 * max(e.tight for e in planned),), "mm"),
         against("planning a path, CPU", [each.seconds for each in planned], "s", name="asked", value=0.5),
-        against(f"planning a metre, paths from {LONG} m on, CPU", per_metre or [np.nan], "s", name="asked", value=0.5),
+        against(
+            f"planning a metre, paths from {LONG_PATH} m on, CPU", per_metre or [np.nan], "s", name="asked", value=0.5
+        ),
     ]
 
 

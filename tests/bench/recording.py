@@ -90,7 +90,7 @@ def _bare_subscriber(samples: int) -> float:
 
     session = zenoh.open(config)
     try:
-        queries = session.declare_queryable(sender.COUNTED)
+        queries = session.declare_queryable(sender.COUNTED_KEY)
         session.declare_subscriber(sender.KEYS.samples(sender.TRACKER), count)
         answering = threading.Thread(target=_answer, args=(queries, every), daemon=True)
         answering.start()
@@ -105,7 +105,7 @@ def _bare_subscriber(samples: int) -> float:
 def _answer(queries: zenoh.Queryable[Any], every: threading.Event) -> None:
     with queries.recv() as query:
         every.wait(60.0)
-        query.reply(sender.COUNTED, b"")
+        query.reply(sender.COUNTED_KEY, b"")
 
 
 def _send(to: str, endpoint: str, samples: int) -> float:

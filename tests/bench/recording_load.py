@@ -29,7 +29,7 @@ from tests.bench.report import Figure
 TRACKERS = 400
 PROCESSES = 4
 TASK = "load"
-BARE = "a bare Zenoh subscriber"
+BARE_SUBSCRIBER = "a bare Zenoh subscriber"
 
 
 def measure(*, seconds: float) -> list[Figure]:
@@ -43,8 +43,8 @@ def measure(*, seconds: float) -> list[Figure]:
     return [
         Figure(f"{what}: samples lost", (lost,), f"of {sent:,}"),
         Figure(f"{what}: demonstrations made", (demonstrations,), f"of {TRACKERS}"),
-        Figure("latency, sent to received, p50", (p50,), "ms", f"{BARE}: {bare50:.2f} ms", p50 / bare50),
-        Figure("latency, sent to received, p99", (p99,), "ms", f"{BARE}: {bare99:.2f} ms", p99 / bare99),
+        Figure("latency, sent to received, p50", (p50,), "ms", f"{BARE_SUBSCRIBER}: {bare50:.2f} ms", p50 / bare50),
+        Figure("latency, sent to received, p99", (p99,), "ms", f"{BARE_SUBSCRIBER}: {bare99:.2f} ms", p99 / bare99),
         Figure("latency, sent to received, longest", (worst,), "ms"),
         Figure(
             "largest backlog behind the callback",
@@ -57,7 +57,7 @@ def measure(*, seconds: float) -> list[Figure]:
             "CPU of the recorder's process",
             (100.0 * cpu,),
             "% of a core",
-            f"{BARE}: {100.0 * counted_cpu:.0f} %",
+            f"{BARE_SUBSCRIBER}: {100.0 * counted_cpu:.0f} %",
             cpu / counted_cpu,
         ),
     ]
@@ -68,7 +68,7 @@ def _record(folder: str, seconds: float) -> tuple[int, float, float, float, floa
     bus = listen_on_bus(settings)
     try:
         with _recorder(bus, folder) as (recorder, store):
-            bus.serve(crowd.RECEIVED, lambda _: b"")
+            bus.serve(crowd.RECEIVED_KEY, lambda _: b"")
             for number in range(TRACKERS):
                 recorder.begin(RecordingRequest(TASK, crowd.name(number), scene="empty"))
             with _watched(recorder) as backlogs:
@@ -133,7 +133,7 @@ def _count(seconds: float) -> tuple[float, np.ndarray]:
     taken: list[tuple[bytes, int]] = []
     session = zenoh.open(config)
     try:
-        session.declare_queryable(crowd.RECEIVED, lambda query: query.reply(crowd.RECEIVED, b""))
+        session.declare_queryable(crowd.RECEIVED_KEY, lambda query: query.reply(crowd.RECEIVED_KEY, b""))
         session.declare_subscriber(
             crowd.KEYS.all_samples, lambda sample: taken.append((sample.payload.to_bytes(), time.time_ns()))
         )

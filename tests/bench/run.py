@@ -67,7 +67,7 @@ def main() -> None:
         "Random paths, planned and judged by an independent checker",
         plans.measure(count=10 if quick else 100),
     )
-    for example in model_arms.ASKED:
+    for example in model_arms.PATH_LENGTHS:
         figures = model_arms.measure(example, count=10 if quick else 50)
         print_report(f"Arms from models, planned: {example}", figures)
     print_report(

@@ -11,7 +11,7 @@ from teachpath_proto.keys import Keys
 
 KEYS = Keys("bench")
 TRACKER = "glove"
-COUNTED = "bench/counted"  # query of the bare subscriber: answers when it has counted so many
+COUNTED_KEY = "bench/counted"  # query of the bare subscriber: answers when it has counted so many
 
 
 def payloads(count: int) -> list[bytes]:
@@ -37,7 +37,7 @@ def send_to_recorder(endpoint: str, count: int) -> float:
 def send_to_subscriber(endpoint: str, count: int) -> float:
     """Send to the bare subscriber and return the seconds from the first sample to its answer."""
     with Link(endpoint) as link:
-        return _timed(link, COUNTED, count, str(count).encode())
+        return _timed(link, COUNTED_KEY, count, str(count).encode())
 
 
 def stop_request(count: int) -> bytes:

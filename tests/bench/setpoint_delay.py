@@ -27,10 +27,10 @@ from tests.ports import free_endpoint
 
 KEY = Keys("bench").setpoint("puma560")
 PERIOD_NS = 4_000_000
-WAY = np.ones((80, 3, 6))  # a long way to rest: most of what a setpoint carries
+WAY_TO_REST = np.ones((80, 3, 6))  # a long way to rest: most of what a setpoint carries
 PLAYED_BEHIND = 30.0  # [ms] that an arm plays its setpoints late: a later one finds it on its way to rest
-LOOK = 0.001  # [s] between two looks of the arm at what has come
-BUSY = 2 * (os.cpu_count() or 1)  # loops that never wait
+LOOK_PERIOD = 0.001  # [s] between two looks of the arm at what has come
+BUSY_PROCESSES = 2 * (os.cpu_count() or 1)  # loops that never wait
 
 
 def measure(*, seconds: float) -> list[Figure]:
@@ -59,7 +59,7 @@ def _delays(seconds: float, realtime: bool) -> list[float]:
             processes.append(context.Process(target=function, args=(settings, realtime, seconds, theirs), daemon=True))
             processes[-1].start()
             ours.recv()  # it is on the bus
-        for _ in range(BUSY):
+        for _ in range(BUSY_PROCESSES):
             processes.append(context.Process(target=_loop, daemon=True))
             processes[-1].start()
         (_, _), (arm, _), (executor, _) = pipes
@@ -93,7 +93,7 @@ def _arm(settings: BusSettings, realtime: bool, _: float, parent: Connection) ->
     while not parent.poll():
         while came:
             delays.append((time.time_ns() - wire.decode_setpoint(came.popleft()).sent_ns) / 1e6)
-        time.sleep(LOOK)
+        time.sleep(LOOK_PERIOD)
     parent.send(delays)
 
 
@@ -106,7 +106,7 @@ def _executor(settings: BusSettings, realtime: bool, seconds: float, parent: Con
     pacer, still = Pacer(PERIOD_NS, TimeSource()), np.zeros(6)
     for cycle in range(round(seconds * 1e9 / PERIOD_NS)):
         due = pacer.wait()
-        setpoint = Setpoint(cycle, due, time.time_ns(), still, still, still, False, "e1", way_to_rest=WAY)
+        setpoint = Setpoint(cycle, due, time.time_ns(), still, still, still, False, "e1", way_to_rest=WAY_TO_REST)
         bus.publish(KEY, wire.encode_setpoint(setpoint))
     parent.send("done")
     parent.poll(None)

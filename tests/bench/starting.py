@@ -17,7 +17,7 @@ from tests.bench.report import Figure, against, machine, print_report
 from tests.system.processes import Service, family
 from tests.waiting import HANG
 
-SETTLED = 5.0  # [s] after which nothing of a start is under way any more
+SETTLING_TIME = 5.0  # [s] after which nothing of a start is under way any more
 LIBRARIES = "import numpy, scipy, fastapi"
 # Words of a process's command line or [name], the first that fit; others are those of jobs and their helpers.
 NAMES = {
@@ -39,9 +39,9 @@ def measure(*, starts: int) -> list[Figure]:
             with Service(Path(folder) / f"{number}" / "data") as service:
                 service.station.wait_for_arm(timeout=HANG)
                 times["all, when the arm is ready"].append(sum(_seconds(service).values()))
-                time.sleep(SETTLED)
+                time.sleep(SETTLING_TIME)
                 each = _seconds(service)
-                times[f"all, {SETTLED:g} s later"].append(sum(each.values()))
+                times[f"all, {SETTLING_TIME:g} s later"].append(sum(each.values()))
                 for name, seconds in each.items():
                     times[name].append(seconds)
     beside = median(libraries)

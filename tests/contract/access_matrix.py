@@ -25,7 +25,7 @@ ABOUT_KEYS = """On the bus (Zenoh) a program has a login of a role: `tracker` de
 `viewer` views; `executor` and `robot` are parts of the station. What stands here, below the station's prefix, is let
 through, and nothing else; a tracker or robot that is held to one name has the keys of that name alone. The service
 itself, which answers under `recorder` and `station`, and tells `jobs` and `feedback`, may do everything."""
-NOBODY = "none"  # what a route needs that is open to everybody
+NO_ROLE = "none"  # what a route needs that is open to everybody
 
 
 def declarations(context: RouteContext) -> list[str]:
@@ -37,7 +37,7 @@ def declarations(context: RouteContext) -> list[str]:
             assert isinstance(one, params.Security)
             found += list(one.scopes)
         elif one.dependency is let_pass:
-            found.append(NOBODY)
+            found.append(NO_ROLE)
     return found
 
 

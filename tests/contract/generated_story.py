@@ -18,7 +18,7 @@ from teachpath_rest.models import Job, NewJob, NewJobKind, NewPlan, NewTask, Ref
 from teachpath_rest.types import File
 
 TASK = "generated"
-UNENDED = ("queued", "running")
+UNENDED_STATES = ("queued", "running")
 T = TypeVar("T")
 
 
@@ -31,7 +31,7 @@ def done(answer: T | Refusal | None) -> T:
 
 def ended(client: AuthenticatedClient, job: Job) -> str:
     """Wait for the end of a job, and return the id of what it made."""
-    while job.state in UNENDED:
+    while job.state in UNENDED_STATES:
         time.sleep(0.2)
         job = done(get_job.sync(job.id, client=client))
     if job.state != "succeeded":

@@ -5,8 +5,9 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+CONSTANT = re.compile(r"^(?:export )?const ([A-Z][A-Z0-9_]*) =", re.MULTILINE)
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
-DECLARED = re.compile(
+DECLARATION = re.compile(
     r"\b(?:class|function|const|let|get|set|static)\s+#?([A-Za-z_]\w*)"  # a declaration
     r"|^\s+(?:async\s+)?#?([A-Za-z_]\w*)\([^)]*\)\s*\{$"  # a method
     r"|^\s+#?([A-Za-z_]\w*)\s*(?:=|: )",  # a field
@@ -28,8 +29,19 @@ def python_identifiers(source: str) -> Iterator[str]:
 
 def script_identifiers(source: str) -> Iterator[str]:
     """Yield what a module of the page declares."""
-    for found in DECLARED.finditer(source):
+    for found in DECLARATION.finditer(source):
         yield next(name for name in found.groups() if name)
+
+
+def constants(source: str, *, script: bool) -> Iterator[str]:
+    """Yield the constants of a module of Python or of the page: names in capitals that stand outside of everything."""
+    if script:
+        yield from (found[1] for found in CONSTANT.finditer(source))
+        return
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            yield from (_name(each) for target in targets for each in _unpacked(target) if _name(each).isupper())
 
 
 def words(identifier: str) -> list[str]:

@@ -8,7 +8,7 @@ that is not frozen; and it asks no clock and no generator that was not seeded. C
 import ast
 from collections.abc import Iterator
 
-OUTSIDE = {"os", "io", "socket", "subprocess", "pathlib", "threading", "asyncio", "requests", "urllib"}
+OUTSIDE_MODULES = {"os", "io", "socket", "subprocess", "pathlib", "threading", "asyncio", "requests", "urllib"}
 CLOCKS_AND_CHANCE = {"time", "datetime", "uuid", "random", "secrets"}
 MUTATORS = {
     "add", "append", "appendleft", "clear", "discard", "extend", "fill", "insert", "pop", "popleft", "popitem",
@@ -75,7 +75,7 @@ def _imports(tree: ast.Module) -> Iterator[str]:
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
         names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
         for name in names:
-            if name.split(".")[0] in OUTSIDE | CLOCKS_AND_CHANCE:
+            if name.split(".")[0] in OUTSIDE_MODULES | CLOCKS_AND_CHANCE:
                 yield f"line {node.lineno}: imports {name}"
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 Schema = dict[str, Any]
-LEAST = ("minimum", "exclusiveMinimum", "minLength", "minItems")
-MOST = ("maximum", "exclusiveMaximum", "maxLength", "maxItems")
+LOWER_BOUNDS = ("minimum", "exclusiveMinimum", "minLength", "minItems")
+UPPER_BOUNDS = ("maximum", "exclusiveMaximum", "maxLength", "maxItems")
 
 
 class Values:
@@ -60,9 +60,9 @@ class Values:
             yield f"{place} may be {sorted(map(str, new))}"
 
     def _limits(self, place: str, wide: Schema, narrow: Schema) -> Iterator[str]:
-        for name in (*LEAST, *MOST):
+        for name in (*LOWER_BOUNDS, *UPPER_BOUNDS):
             if name in wide:
-                sign = 1 if name in LEAST else -1
+                sign = 1 if name in LOWER_BOUNDS else -1
                 if name not in narrow or sign * narrow[name] < sign * wide[name]:
                     yield f"{place}: {name} is {wide[name]}, and was {narrow.get(name, 'none')}"
         for name in ("pattern", "format"):

@@ -23,7 +23,7 @@ HEADER = """\
 # named after room and setting wins over the file, TEACHPATH_WEB__PORT=9000, and the command line over both.
 # Lengths are in metres, angles in radians, times in seconds. A setting that begins with `#` has no value by default.
 """
-MORE = {
+SECTION_NOTES = {
     "calibrations": "# rotation: unit quaternion w, x, y, z; offset [m]; scale 0.0254 is for a device in inches",
     "scenes": """\
 # Positions are of centres [m], sizes of a box x, y, z, of a cylinder radius, height, of a sphere its radius; a shape
@@ -34,7 +34,7 @@ MORE = {
 # `floor`: its height. Arm, gripper and carried object stay above it, inside every box of [[scenes.keep_in]] and out of
 # every shape of [[scenes.keep_out]]""",
 }
-RARE = ("orientation", "file", "vertices", "mass", "max_pieces", "pieces")  # of a shape, not shown
+RARE_FIELDS = ("orientation", "file", "vertices", "mass", "max_pieces", "pieces")  # of a shape, not shown
 # A setting without a default shows one that it could have.
 EXAMPLES = {
     "motion.arm": "light",
@@ -73,7 +73,7 @@ def _room(room: str, value: Any) -> Iterator[str]:
 
 def _tables(room: str, values: tuple[Calibration | Scene, ...]) -> Iterator[str]:
     yield f"# {summary(type(values[0]))}".replace("or None", "or left out")
-    yield MORE[room]
+    yield SECTION_NOTES[room]
     for value in values:
         yield f"[[{room}]]"
         tables = {}
@@ -88,7 +88,7 @@ def _tables(room: str, values: tuple[Calibration | Scene, ...]) -> Iterator[str]
             mark = f"[[{room}.{name}]]" if isinstance(getattr(value, name), tuple) else f"[{room}.{name}]"
             for shape in shapes:
                 yield mark
-                shown = [f.name for f in fields(shape) if f.name not in RARE]
+                shown = [f.name for f in fields(shape) if f.name not in RARE_FIELDS]
                 yield from (f"{name} = {_toml(getattr(shape, name), name)}" for name in shown)
         yield ""
 

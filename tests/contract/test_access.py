@@ -40,7 +40,7 @@ def test_every_route_declares_what_it_needs(desk: Desk) -> None:
 
 
 def test_only_stops_probes_the_page_and_its_description_are_open(desk: Desk) -> None:
-    free = {path for method, path, need in access_matrix.needs(desk.station.web) if need == access_matrix.NOBODY}
+    free = {path for method, path, need in access_matrix.needs(desk.station.web) if need == access_matrix.NO_ROLE}
     assert free == {
         "/", "/docs", "/favicon.ico", "/web/{name:path}", "/vendor/{name}", "/asyncapi.json", "/openapi.json",
         "/authority", "/authority.crt", "/authority/address.svg", "/help", "/help/{name:path}",
@@ -54,7 +54,7 @@ def test_whoever_only_looks_changes_nothing(desk: Desk) -> None:
     others = {
         (method, path)
         for method, path, need in access_matrix.needs(desk.station.web)
-        if (need == Capability.VIEW) != (method in ("GET", "WS")) and need != access_matrix.NOBODY
+        if (need == Capability.VIEW) != (method in ("GET", "WS")) and need != access_matrix.NO_ROLE
     }
     readers = {("GET", f"/api/v1/{name}") for name in ("tokens", "people", "audit")}
     assert others == readers | {("WS", "/api/v1/trackers/{name}/samples")}
@@ -71,7 +71,7 @@ def test_the_description_declares_the_scheme_and_what_each_operation_needs(desk:
     for method, path, need in access_matrix.needs(desk.station.web):
         operation = description["paths"].get(path, {}).get(method.lower())
         if operation is not None:
-            expected = [] if need == access_matrix.NOBODY else [{"token": [need]}]
+            expected = [] if need == access_matrix.NO_ROLE else [{"token": [need]}]
             assert operation.get("security") == expected, (method, path)
 
 
@@ -109,7 +109,7 @@ def each(guarded: Guarded) -> list[tuple[str, str, str]]:
     return [
         (method, re.sub(r"\{.*?\}", "moon", path), need)
         for method, path, need in access_matrix.needs(guarded.station.web)
-        if method != "WS" and need != access_matrix.NOBODY
+        if method != "WS" and need != access_matrix.NO_ROLE
     ]
 
 

@@ -11,7 +11,7 @@ from tools import bill_of_materials
 
 from tests.contract.test_requirements import FILES, pins
 
-VALID = JsonStrictValidator(SchemaVersion.V1_6)
+VALIDATOR = JsonStrictValidator(SchemaVersion.V1_6)
 
 
 @pytest.fixture(scope="module")
@@ -21,8 +21,8 @@ def bill() -> dict[str, Any]:
 
 
 def test_it_is_valid_by_the_schema_of_cyclonedx(bill: dict[str, Any]) -> None:
-    assert VALID.validate_str(json.dumps(bill)) is None
-    assert VALID.validate_str(json.dumps(bill | {"components": [{"name": "of no type"}]})) is not None
+    assert VALIDATOR.validate_str(json.dumps(bill)) is None
+    assert VALIDATOR.validate_str(json.dumps(bill | {"components": [{"name": "of no type"}]})) is not None
 
 
 def test_it_has_every_pinned_package_with_all_its_hashes(bill: dict[str, Any]) -> None:

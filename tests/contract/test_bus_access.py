@@ -55,7 +55,7 @@ VERBS = {"p": "put", "h": "subscribe", "s": "serve", "a": "ask"}
 ROWS = [line.split() for line in TABLE.strip().splitlines()]
 KEYS = [f"{PREFIX}/{key}" for key, *_ in ROWS[1:]]
 STOP = f"{PREFIX}/executor/stop"
-DENIED = 1.0  # [s] until a question that nobody lets through is given up
+DENIAL_WAIT = 1.0  # [s] until a question that nobody lets through is given up
 
 
 @pytest.fixture(scope="module")
@@ -191,7 +191,7 @@ def test_only_those_are_answered_who_may_ask(
     may = allowed(login, "ask")
 
     def ask(key: str) -> None:
-        answers[key] = asked(bus, key, HANG if key in may else DENIED)
+        answers[key] = asked(bus, key, HANG if key in may else DENIAL_WAIT)
 
     threads = [threading.Thread(target=ask, args=(key,)) for key in KEYS]
     for thread in threads:
@@ -299,7 +299,7 @@ def test_a_driver_that_is_held_to_its_arm_takes_part_in_everything_that_an_arm_d
 
 def answered(bus: Bus, key: str) -> bool:
     try:
-        return bus.ask(key, timeout=DENIED) == b"done"
+        return bus.ask(key, timeout=DENIAL_WAIT) == b"done"
     except Unreachable:
         return False
 
@@ -357,7 +357,7 @@ def drain(heard: queue.Queue[tuple[str, bytes]]) -> list[tuple[str, bytes]]:
     return came
 
 
-def asked(bus: Bus, key: str, timeout: float = DENIED) -> bool:
+def asked(bus: Bus, key: str, timeout: float = DENIAL_WAIT) -> bool:
     try:
         return bool(bus.ask(key, timeout=timeout))
     except Unreachable:

@@ -16,7 +16,7 @@ from tests.ports import free_endpoint
 DOCUMENT = Path(__file__).parents[2] / "docs" / "several-machines.md"
 TLS = "tls/127.0.0.1:7447"
 # The fields of the settings, what the file says, and the sentence.
-REFUSED = [
+REFUSED_CONFIGS = [
     ({}, "{mode: 'client'}", "sets mode, which the station does itself: it is the setting bus.mode"),
     ({}, "{namespace: 'cell'}", "sets namespace, .* the setting bus.prefix"),
     ({}, "{listen: {endpoints: []}}", "sets listen, .* the setting bus.endpoint"),
@@ -38,7 +38,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("settings", "text", "sentence"), REFUSED)
+@pytest.mark.parametrize(("settings", "text", "sentence"), REFUSED_CONFIGS)
 def test_what_contradicts_the_station_is_refused_with_the_way_out(
     tmp_path: Path, settings: dict[str, object], text: str, sentence: str
 ) -> None:

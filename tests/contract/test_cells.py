@@ -22,18 +22,18 @@ from tests.ports import free_endpoint
 from tests.waiting import wait_until
 
 SAMPLE = Path(__file__).parents[2] / "deploy" / "zenohd-site.json5"
-NOW = datetime.now(UTC)
+CURRENT_TIME = datetime.now(UTC)
 CELLS = {"cell-1": Role.VIEWER, "cell-2": Role.TRACKER}  # what the router's login may do there
 
 
 def cell(folder: Path, name: str) -> BusSettings:
     """Make the certificates of a station, and one for the router."""
     bus = BusSettings(free_endpoint().replace("tcp/", "tls/"), prefix=f"site/{name}", certificates=str(folder / name))
-    certificates.prepare_authority(folder / name, NOW)
+    certificates.prepare_authority(folder / name, CURRENT_TIME)
     for role in set(Role) - {Role.ROUTER}:
         hosts = ["127.0.0.1"] if role is Role.SERVICE else []
-        certificates.issue(folder / name, Login(role.value, "", role), NOW, hosts=hosts)
-    certificates.issue(folder / name, Login("site", "", CELLS[name]), NOW)
+        certificates.issue(folder / name, Login(role.value, "", role), CURRENT_TIME, hosts=hosts)
+    certificates.issue(folder / name, Login("site", "", CELLS[name]), CURRENT_TIME)
     return bus
 
 

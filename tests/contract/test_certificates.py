@@ -28,7 +28,7 @@ from tests.ports import free_endpoint
 from tests.waiting import HANG, wait_until
 
 KEYS = Keys()
-NOW = datetime.now(UTC)
+CURRENT_TIME = datetime.now(UTC)
 REFUSAL = 1.0  # [s] until a client that is not let in gives up
 SETPOINT, STATE = KEYS.setpoint("puma560"), KEYS.state("puma560")
 
@@ -122,13 +122,15 @@ def test_a_client_of_this_user_finds_its_certificate_by_itself(bus: BusSettings,
 
 def of_another_authority(bus: BusSettings, folder: Path) -> Login:
     """The executor's name and role, signed by an authority of somebody else's, that knows the station's for its own."""
-    certificates.prepare_authority(folder, NOW)
-    forged = certificates.issue(folder, Login("executor", "", Role.EXECUTOR), NOW)
+    certificates.prepare_authority(folder, CURRENT_TIME)
+    forged = certificates.issue(folder, Login("executor", "", Role.EXECUTOR), CURRENT_TIME)
     return replace(forged, authority=login(bus, "executor").authority)
 
 
 def of_yesterday(bus: BusSettings, folder: Path) -> Login:
-    return certificates.issue(Path(bus.certificates), Login("past", "", Role.EXECUTOR), NOW - 2 * certificates.LIFE)
+    return certificates.issue(
+        Path(bus.certificates), Login("past", "", Role.EXECUTOR), CURRENT_TIME - 2 * certificates.LIFE
+    )
 
 
 def without_certificate(bus: BusSettings, folder: Path) -> Login:
@@ -252,15 +254,15 @@ def test_keys_are_for_their_owner_alone_and_one_that_others_may_read_is_refused(
 
 def test_a_certificate_is_renewed_in_time_and_a_station_without_one_says_how_to_get_it(tmp_path: Path) -> None:
     bus = prepared(tmp_path)
-    folder, soon = Path(bus.certificates), NOW - certificates.LIFE + timedelta(days=20)
+    folder, soon = Path(bus.certificates), CURRENT_TIME - certificates.LIFE + timedelta(days=20)
     access = prepare_access(bus)
     assert access is not None
-    assert access.notes(NOW) == []
+    assert access.notes(CURRENT_TIME) == []
     for one in (login(bus, "tracker"), login(bus, "left")):
         certificates.issue(folder, one, soon)
     access = prepare_access(bus)
     assert access is not None
-    assert [note.split(" ends on ")[0] for note in access.notes(NOW)] == [
+    assert [note.split(" ends on ")[0] for note in access.notes(CURRENT_TIME)] == [
         "the certificate of left",
         "the certificate of tracker",
     ]
@@ -268,7 +270,7 @@ def test_a_certificate_is_renewed_in_time_and_a_station_without_one_says_how_to_
     assert {line.split(":")[0] for line in answer.splitlines() if ": renewed" in line} == {"left", "tracker", "service"}
     assert (folder / "left.login.json").exists()
     assert certificates.hosts_of(login(bus, "service")) == ["127.0.0.1", "lab.example", "localhost"]
-    certificates.issue(folder, login(bus, "executor"), NOW - 2 * certificates.LIFE)
+    certificates.issue(folder, login(bus, "executor"), CURRENT_TIME - 2 * certificates.LIFE)
     with pytest.raises(UnusableSettings, match=r"certificate of executor ended on .* renew it with: teachpath station"):
         prepare_access(bus)
     (folder / "executor.pem").unlink()
@@ -278,8 +280,8 @@ def test_a_certificate_is_renewed_in_time_and_a_station_without_one_says_how_to_
 
 
 def test_an_authority_signs_nothing_that_would_outlive_it(tmp_path: Path) -> None:
-    certificates.prepare_authority(tmp_path, NOW)
-    end = NOW + certificates.AUTHORITY_LIFE
+    certificates.prepare_authority(tmp_path, CURRENT_TIME)
+    end = CURRENT_TIME + certificates.AUTHORITY_LIFE
     who = Login("executor", "", Role.EXECUTOR)
     late = certificates.issue(tmp_path, who, end - timedelta(days=40))
     assert certificates.expiry(late) <= end

@@ -23,7 +23,7 @@ from teachpath_client import Station
 from tests.contract.desk import Desk, csv
 
 TASK, SECOND = "listed", "listed-second"
-HEAVY = ("numpy", "scipy", "httpx", "zenoh", "google", "sqlalchemy", "rich", "teachpath.config")
+HEAVY_PACKAGES = ("numpy", "scipy", "httpx", "zenoh", "google", "sqlalchemy", "rich", "teachpath.config")
 
 
 @pytest.fixture(scope="module")
@@ -201,7 +201,7 @@ def test_help_of_every_command_loads_nothing_heavy() -> None:
         "import sys\nfrom typer.testing import CliRunner\nfrom teachpath.__main__ import app\n"
         f"for words in {every!r}:\n"
         "    assert CliRunner().invoke(app, [*words, '--help']).exit_code == 0, words\n"
-        f"print([name for name in {HEAVY!r} if name in sys.modules])"
+        f"print([name for name in {HEAVY_PACKAGES!r} if name in sys.modules])"
     )
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
 

@@ -14,7 +14,7 @@ from tests.unit.recorder.recorders import Bench
 from tests.unit.recording.hands import demonstration
 from tests.waiting import wait_until
 
-SHOWN = 110  # samples of a demonstration
+SAMPLE_COUNT = 110  # samples of a demonstration
 
 
 @pytest.fixture
@@ -30,8 +30,8 @@ def settings(postgres: Server, line: Proxy, tmp_path: Path) -> StoreSettings:
 
 
 def show(bench: Bench, take: int) -> None:
-    bench.send(demonstration(1 + (take - 1) * SHOWN))
-    bench.received(take * SHOWN)
+    bench.send(demonstration(1 + (take - 1) * SAMPLE_COUNT))
+    bench.received(take * SAMPLE_COUNT)
 
 
 def test_takes_of_while_the_line_was_cut_have_their_rows_when_it_is_back(settings: StoreSettings, line: Proxy) -> None:

@@ -28,7 +28,7 @@ RESOURCES = [
 ]
 SITE = yaml.safe_load((DEPLOY / "compose-site.yaml").read_text())
 PODS = {r["metadata"]["name"]: r["spec"]["template"]["spec"] for r in RESOURCES if "template" in r.get("spec", {})}
-OWN = "tests' own"  # of values that come from a Secret
+OWN_NAME = "tests' own"  # of values that come from a Secret
 
 KINDS = json.loads(KUBERNETES.read_text())
 
@@ -65,7 +65,7 @@ def of_pod(container: dict[str, Any], name: str) -> Settings:
     for variable in container["env"]:
         source = variable.get("valueFrom", {})
         field = source.get("fieldRef", {}).get("fieldPath")
-        value = {"metadata.name": name, None: OWN}.get(field, name.rpartition("-")[2])
+        value = {"metadata.name": name, None: OWN_NAME}.get(field, name.rpartition("-")[2])
         given[variable["name"]] = re.sub(r"\$\((\w+)\)", lambda at: given[at[1]], variable.get("value", value))
     with variables(given):
         return load(CLUSTER / "teachpath.toml")

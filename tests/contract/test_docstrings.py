@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 LEFT_OUT = ("migrations", "_pb2")
-LONGEST = 5  # lines that are read together with the function around them
+LONGEST_TITLE = 5  # lines that are read together with the function around them
 FILES = [
     file
     for folder in ("service/teachpath", "clients", "proto/teachpath_proto")
@@ -34,7 +34,7 @@ def unexplained(source: str) -> list[str]:
     return [
         f"{function.name} (line {function.lineno})"
         for function in functions
-        if lines[function] > LONGEST or any("router" in ast.unparse(each) for each in function.decorator_list)
+        if lines[function] > LONGEST_TITLE or any("router" in ast.unparse(each) for each in function.decorator_list)
     ]
 
 
@@ -47,8 +47,8 @@ def test_operations_and_long_functions_within_functions_say_what_they_do() -> No
     ("body", "found"),
     [
         ("    def short():\n        return 1", []),
-        ("    def long():\n" + "        pass\n" * LONGEST, ["long (line 2)"]),
-        ('    def long():\n        """Do it."""\n' + "        pass\n" * LONGEST, []),
+        ("    def long():\n" + "        pass\n" * LONGEST_TITLE, ["long (line 2)"]),
+        ('    def long():\n        """Do it."""\n' + "        pass\n" * LONGEST_TITLE, []),
         ("    @router.get('/')\n    def page():\n        return 1", ["page (line 3)"]),
     ],
 )

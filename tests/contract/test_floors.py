@@ -45,12 +45,12 @@ GROUPS = {
         ["execution"],
     ],
 }
-BESIDE = ("motion.analysis",)  # groups that judge what the others make, so that none of those may use them
+SIDE_ROOMS = ("motion.analysis",)  # groups that judge what the others make, so that none of those may use them
 
-GENERATED = "teachpath_proto.*_pb2"  # the modules that protoc generates
+GENERATED_MODULES = "teachpath_proto.*_pb2"  # the modules that protoc generates
 
 DOORS = {
-    GENERATED: ["io/wire"],
+    GENERATED_MODULES: ["io/wire"],
     "zenoh": ["io/bus.py"],
     "json5": ["io/bus_config.py"],
     "distributed": ["jobs/cluster.py", "jobs/cluster_executor.py", "jobs/cluster_worker.py"],
@@ -115,7 +115,9 @@ def imports(file: Path) -> Iterator[str]:
 def outside_thing(name: str) -> str:
     """Return which entry of DOORS an imported name belongs to."""
     package, *rest = name.split(".")
-    return GENERATED if package == "teachpath_proto" and any(part.endswith("_pb2") for part in rest) else package
+    return (
+        GENERATED_MODULES if package == "teachpath_proto" and any(part.endswith("_pb2") for part in rest) else package
+    )
 
 
 def room(file: Path) -> str:
@@ -154,7 +156,7 @@ def test_imports_within_a_room_go_down_only(file: Path) -> None:
         if parts[:2] != ["teachpath", of] or len(parts) < 3 or parts[2] == here:
             continue
         assert floor[parts[2]] < floor[here], f"{of}.{here} must not import {name}"
-        assert f"{of}.{parts[2]}" not in BESIDE, f"{of}.{here} must not import {name}"
+        assert f"{of}.{parts[2]}" not in SIDE_ROOMS, f"{of}.{here} must not import {name}"
 
 
 @pytest.mark.parametrize("of", GROUPS)

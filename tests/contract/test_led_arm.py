@@ -32,16 +32,16 @@ def dear_posture() -> np.ndarray:
     return dear.joints[::2]
 
 
-SHOWN = dear_posture()
+SHOWN_POSTURE = dear_posture()
 
 
 def table(seed: int) -> bytes:
     """A table of joints that follow the posture, a little different each time."""
-    wobble = 0.002 * np.sin(np.linspace(0.0, 6.0, len(SHOWN)) + seed)
-    joints = np.pad(SHOWN + wobble[:, None], ((RESTS, RESTS), (0, 0)), mode="edge")
+    wobble = 0.002 * np.sin(np.linspace(0.0, 6.0, len(SHOWN_POSTURE)) + seed)
+    joints = np.pad(SHOWN_POSTURE + wobble[:, None], ((RESTS, RESTS), (0, 0)), mode="edge")
     joints[:RESTS, 0] -= 0.01 * np.arange(RESTS, 0, -1)  # it comes from beside, and leaves
     joints[-RESTS:, 0] += 0.01 * np.arange(1, RESTS + 1)
-    grasp = np.pad(np.ones(len(SHOWN)), RESTS)
+    grasp = np.pad(np.ones(len(SHOWN_POSTURE)), RESTS)
     columns = np.column_stack([0.02 * np.arange(len(joints)), joints, grasp])
     rows = [",".join(map(repr, row)) for row in columns.tolist()]
     return "\n".join([",".join(["t", *PUMA_JOINTS, "grasp"]), *rows, ""]).encode()
@@ -73,7 +73,7 @@ def test_a_plan_keeps_to_the_joints_that_were_shown_and_says_how_far_it_is(
     made = json.loads(CliRunner().invoke(app, words, catch_exceptions=False).stdout)
     assert made["output"] == {"name": "glue", "start": 0.3, "end": 0.0}
     assert made["posture"]["distance"]["value"] < 0.2
-    assert np.abs(np.array(made["joints"][0]) - SHOWN[0]).max() < 0.2
+    assert np.abs(np.array(made["joints"][0]) - SHOWN_POSTURE[0]).max() < 0.2
     station, _ = path
     assert made["posture"]["demonstration"] in {d.id for d in station.demonstrations(TASK)}
 
@@ -82,14 +82,14 @@ def test_a_plan_may_choose_as_if_a_hand_had_shown_it(path: tuple[Station, str]) 
     station, key = path
     free = station.plan(key, posture="free")
     assert (free.posture, free.output) == (None, None)
-    assert np.abs(np.array(free.joints[0]) - SHOWN[0]).max() > 1.0
+    assert np.abs(np.array(free.joints[0]) - SHOWN_POSTURE[0]).max() > 1.0
 
 
 def test_joints_are_kept_with_the_samples(path: tuple[Station, str], desk: Desk) -> None:
     store = desk.station.store
     first = store.demonstrations(TASK)[0]
     joints = store.recordings.columns(first.recording, first.digest).joints
-    assert np.abs(joints[RESTS:-RESTS] - SHOWN).max() < 0.01
+    assert np.abs(joints[RESTS:-RESTS] - SHOWN_POSTURE).max() < 0.01
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-LOOKS = "def test_looks(browser): ...\ndef test_looks_again(browser): ...\ndef test_does_not_look(): ...\n"
+BROWSER_TESTS = "def test_looks(browser): ...\ndef test_looks_again(browser): ...\ndef test_does_not_look(): ...\n"
 
 
 def without_browser(folder: Path, **environment: str) -> tuple[int, str]:
     """Run three tests, two of which need a browser, where there is none; return the status and the last line."""
-    (folder / "test_page.py").write_text(LOOKS)
+    (folder / "test_page.py").write_text(BROWSER_TESTS)
     (folder / "pytest.ini").write_text("[pytest]\n")
     clean = {name: value for name, value in os.environ.items() if name != "TEACHPATH_REQUIRE_BROWSER"}
     ended = subprocess.run(

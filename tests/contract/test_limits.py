@@ -17,13 +17,13 @@ from tests.waiting import wait_until
 
 PAGE = Path(__file__).parents[2] / "clients" / "web"
 BURST = 12
-SELDOM = 1e-6  # [1/s]: none is given back while a test runs
+SELDOM_RATE = 1e-6  # [1/s]: none is given back while a test runs
 FILES = 1500  # bytes of files that may wait: one of those that are sent, not two
 
 
 @pytest.fixture(scope="module")
 def hurried() -> Iterator[Guarded]:
-    with opened(request_rate=SELDOM, request_burst=BURST) as guarded:
+    with opened(request_rate=SELDOM_RATE, request_burst=BURST) as guarded:
         yield guarded
 
 
@@ -60,7 +60,7 @@ def test_whoever_asks_too_often_is_told_when_to_go_on(hurried: Guarded) -> None:
     answer = use_up(hurried, hurried.make("busy", Capability.VIEW))
     refused(answer, 429, f"busy has sent over {BURST} requests at once")
     assert answer.json()["error"] == "TooManyRequests"
-    assert 1 <= int(answer.headers["retry-after"]) <= 1 / SELDOM
+    assert 1 <= int(answer.headers["retry-after"]) <= 1 / SELDOM_RATE
 
 
 def test_another_subject_does_not_wait_for_it(hurried: Guarded) -> None:

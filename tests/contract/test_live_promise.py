@@ -11,12 +11,12 @@ from teachpath.api.live_description import live_description
 from tests.contract.live_promise import PROMISE, broken
 from tests.contract.rest_promise import without_texts
 
-PROMISED: dict[str, Any] = json.loads(PROMISE.read_text())
+PROMISED_DESCRIPTION: dict[str, Any] = json.loads(PROMISE.read_text())
 Description = dict[str, Any]
 
 
 def test_the_websockets_keep_what_this_version_promised() -> None:
-    assert list(broken(PROMISED, without_texts(live_description()))) == []
+    assert list(broken(PROMISED_DESCRIPTION, without_texts(live_description()))) == []
 
 
 def fields(description: Description, model: str) -> dict[str, Any]:
@@ -77,14 +77,14 @@ def drop_a_field(d: Description) -> None:
     ],
 )
 def test_what_breaks_a_promise_is_found(change: Callable[[Description], None], sentence: str) -> None:
-    changed = copy.deepcopy(PROMISED)
+    changed = copy.deepcopy(PROMISED_DESCRIPTION)
     change(changed)
-    faults = list(broken(PROMISED, changed))
+    faults = list(broken(PROMISED_DESCRIPTION, changed))
     assert any(sentence in fault for fault in faults), faults
 
 
 def test_what_is_added_breaks_nothing() -> None:
-    changed = copy.deepcopy(PROMISED)
+    changed = copy.deepcopy(PROMISED_DESCRIPTION)
     moon = {"name": "moon", "payload": {"type": "object", "properties": {}}}
     changed["channels"]["moon"] = {"address": "/api/v1/moon", "messages": {"moon": moon}}
     changed["channels"]["events"]["messages"]["moonState"] = moon
@@ -92,4 +92,4 @@ def test_what_is_added_breaks_nothing() -> None:
     changed["operations"]["watchEvents"]["messages"].append(reference)
     fields(changed, "ResyncEvent")["moon"] = {"type": "string"}
     fields(changed, "EndMessage")["moon"] = {"type": "string", "default": ""}
-    assert list(broken(PROMISED, changed)) == []
+    assert list(broken(PROMISED_DESCRIPTION, changed)) == []

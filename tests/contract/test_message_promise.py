@@ -13,7 +13,7 @@ from google.protobuf.descriptor_pb2 import (
 from teachpath_proto import job_pb2, motion_pb2, tracker_pb2
 from tests.contract import messages
 
-PROMISED = FileDescriptorSet.FromString(messages.PROMISE.read_bytes())
+PROMISED_FILES = FileDescriptorSet.FromString(messages.PROMISE.read_bytes())
 
 
 def broken(promised: FileDescriptorSet, present: FileDescriptorSet) -> Iterator[str]:
@@ -63,7 +63,7 @@ def present() -> FileDescriptorSet:
 
 
 def test_messages_keep_what_this_version_promised() -> None:
-    assert list(broken(PROMISED, present())) == []
+    assert list(broken(PROMISED_FILES, present())) == []
 
 
 def test_what_breaks_a_promise_is_found() -> None:
@@ -74,7 +74,7 @@ def test_what_breaks_a_promise_is_found() -> None:
     fields["Vector3"].pop(2)
     fields["Vector3"].add(name="w", number=4, type=progress.TYPE_DOUBLE)
     double = "TYPE_DOUBLE LABEL_OPTIONAL"
-    assert list(broken(PROMISED, changed)) == [
+    assert list(broken(PROMISED_FILES, changed)) == [
         f"teachpath.v1.JobProgress 4 was fraction, {double} and is fraction, {double.replace('DOUBLE', 'FLOAT')}",
         f"teachpath.v1.Vector3 3 (z, {double}) is gone",
     ]

@@ -8,7 +8,7 @@ import pytest
 
 from tests.contract import messages
 
-DECLARED = re.compile(r"^(?:(message|enum) (\w+) \{|((?:optional |repeated )?[\w.]+ )?(\w+) = (\d+);)$")
+DECLARATION = re.compile(r"^(?:(message|enum) (\w+) \{|((?:optional |repeated )?[\w.]+ )?(\w+) = (\d+);)$")
 UNIT = re.compile(r"\[(1|m|s|ns|us|Hz|rad|rad/s|rad/s\^2|N m)\b[^\]]*\]|unit of the field")
 
 
@@ -25,7 +25,7 @@ def unsaid(text: str) -> Iterator[str]:
             yield from (f"{owner} does not reserve {number}" for number in sorted(gone))
         if line.startswith("reserved"):
             scope[-1][1].update(map(int, re.findall(r"\d+", line)))
-        if found := DECLARED.match(line):
+        if found := DECLARATION.match(line):
             _, owner, kind, field, number = found.groups()
             name = owner or f"{scope[-1][0]}.{field}"
             if not comment:

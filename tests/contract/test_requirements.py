@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 FILES = {name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("service", "site", "dev", "uv")}
-APART = {  # in environments of their own
+REQUIREMENT_FILES = {  # in environments of their own
     name: (ROOT / "requirements" / f"{name}.txt").read_text() for name in ("contract", "generators")
 }
 
@@ -30,7 +30,7 @@ def wanted(*lists: list[str]) -> set[str]:
     return {re.sub(r"[-_.]+", "-", name[0]).lower() for name in names if name}
 
 
-@pytest.mark.parametrize("text", [*FILES.values(), *APART.values()], ids=[*FILES, *APART])
+@pytest.mark.parametrize("text", [*FILES.values(), *REQUIREMENT_FILES.values()], ids=[*FILES, *REQUIREMENT_FILES])
 def test_every_requirement_is_a_version_with_hashes_and_nothing_else(text: str) -> None:
     lines = text.replace("\\\n", "").splitlines()
     assert lines
@@ -48,7 +48,7 @@ def test_everything_that_is_asked_for_is_pinned() -> None:
         <= service | site | dev
     )
     assert wanted(groups["setup"]) == set(pinned(FILES["uv"]))
-    for name, text in APART.items():
+    for name, text in REQUIREMENT_FILES.items():
         assert wanted(groups[name]) <= set(pinned(text))
 
 

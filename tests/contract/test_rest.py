@@ -15,7 +15,7 @@ from tests.contract.desk import API, Desk, csv, refused
 
 # what is not there
 
-NEEDED = {
+NEEDED_BODIES = {
     "/tasks/moon/jobs": {},
     "/tasks/moon/recording": {"tracker": "glove"},
     "/tasks/moon/recording/stop": {"tracker": "glove"},
@@ -52,7 +52,7 @@ NEEDED = {
     ],
 )
 def test_what_is_not_there_is_404_and_named(desk: Desk, method: str, resource: str, what: str) -> None:
-    answer = desk.send(method, API + resource, json=NEEDED.get(resource) if method == "POST" else None)
+    answer = desk.send(method, API + resource, json=NEEDED_BODIES.get(resource) if method == "POST" else None)
     refused(answer, 404, f"there is no {what}")
 
 
@@ -208,7 +208,7 @@ def test_no_answer_is_described_as_just_an_object(desk: Desk) -> None:
 
 TEXT = st.text(st.characters(), max_size=20)  # with halves of surrogate pairs
 WORD = st.one_of(st.sampled_from(["fuzz", "fuzz-2", "..", "x" * 65, "stop"]), st.text(max_size=20))
-ANY = st.recursive(
+ANY_JSON = st.recursive(
     st.none() | st.booleans() | st.floats() | st.integers() | TEXT,
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
     max_leaves=6,
@@ -219,7 +219,7 @@ FIELDS = st.sampled_from(
 
 
 @settings(max_examples=300, deadline=None)
-@given(pick=st.integers(0, 10_000), words=st.tuples(WORD, WORD), body=st.dictionaries(FIELDS, ANY))
+@given(pick=st.integers(0, 10_000), words=st.tuples(WORD, WORD), body=st.dictionaries(FIELDS, ANY_JSON))
 def test_whatever_is_sent_is_answered_without_a_fault(
     desk: Desk, pick: int, words: tuple[str, str], body: dict[str, Any]
 ) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from tests.contract.desk import Desk, csv, refused
 
-BESIDE = {"archive": {"task.json", "SHA256SUMS"}}  # the files of the demonstrations
+SIDE_FILES = {"archive": {"task.json", "SHA256SUMS"}}  # the files of the demonstrations
 
 
 @pytest.mark.parametrize("kind", ["csv", "mcap", "trajectory"])
@@ -33,8 +33,8 @@ def test_a_task_is_taken_away_as_a_zip(desk: Desk, kind: str) -> None:
         if kind in ("lerobot", "lerobot-2.1"):
             assert f"{task}/meta/info.json" in names
         else:
-            assert len(names) - len(BESIDE.get(kind, ())) == count
-            assert {name.partition("/")[2] for name in names} >= BESIDE.get(kind, set())
+            assert len(names) - len(SIDE_FILES.get(kind, ())) == count
+            assert {name.partition("/")[2] for name in names} >= SIDE_FILES.get(kind, set())
 
 
 def test_what_is_not_there_or_not_known_is_said(desk: Desk) -> None:

@@ -10,13 +10,13 @@ import pytest
 from tests.contract import openapi
 from tests.contract.rest_promise import PROMISE, broken
 
-PROMISED: dict[str, Any] = json.loads(PROMISE.read_text())
-PRESENT: dict[str, Any] = json.loads(openapi.FILE.read_text())
+PROMISED_DESCRIPTION: dict[str, Any] = json.loads(PROMISE.read_text())
+PRESENT_DESCRIPTION: dict[str, Any] = json.loads(openapi.FILE.read_text())
 TASK = "/api/v1/tasks/{task}"
 
 
 def test_the_api_keeps_what_this_version_promised() -> None:
-    assert list(broken(PROMISED, PRESENT)) == []
+    assert list(broken(PROMISED_DESCRIPTION, PRESENT_DESCRIPTION)) == []
 
 
 def operation(description: dict[str, Any], method: str, path: str) -> dict[str, Any]:
@@ -122,14 +122,14 @@ def refuse_without_a_sentence(d: dict[str, Any]) -> None:
     ],
 )
 def test_what_breaks_a_promise_is_found(change: Callable[[dict[str, Any]], None], sentence: str) -> None:
-    changed = copy.deepcopy(PROMISED)
+    changed = copy.deepcopy(PROMISED_DESCRIPTION)
     change(changed)
-    faults = list(broken(PROMISED, changed))
+    faults = list(broken(PROMISED_DESCRIPTION, changed))
     assert any(sentence in fault for fault in faults), faults
 
 
 def test_what_is_added_breaks_nothing() -> None:
-    changed = copy.deepcopy(PROMISED)
+    changed = copy.deepcopy(PROMISED_DESCRIPTION)
     changed["paths"]["/api/v1/moons"] = {"get": operation(changed, "get", "/tasks")}
     operation(changed, "get", "/tasks")["parameters"].append(
         {"in": "query", "name": "moon", "required": False, "schema": {"type": "string", "default": ""}}
@@ -137,4 +137,4 @@ def test_what_is_added_breaks_nothing() -> None:
     fields(changed, "NewTask")["moon"] = {"type": "boolean", "default": False}
     fields(changed, "Job")["moon"] = {"type": "string"}
     fields(changed, "NewJob")["kind"]["enum"].append("moon")
-    assert list(broken(PROMISED, changed)) == []
+    assert list(broken(PROMISED_DESCRIPTION, changed)) == []

@@ -33,7 +33,7 @@ def test_a_bad_tracker_name_is_refused(desk: Desk, tracker: str) -> None:
 
 # imports
 
-SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
+SHORT_TABLE = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ SHORT = "t,x,y,z\n" + "".join(f"{i * 0.02},{i},0,0\n" for i in range(6))
         (csv(), {"units": "mm", "scene": "paper"}, "check units and calibration"),
         (csv() + "1e300,0,0,0\n", {}, "a time of 1e+300 s is no time"),
         ("t,x,y,z\n" + "9" * 200_000, {}, "CSV"),
-        (SHORT, {}, "under the least of 8"),
+        (SHORT_TABLE, {}, "under the least of 8"),
         (csv(), {"units": "parsec"}, "units 'parsec' are unknown; known: m, cm, mm, in"),
         (csv(), {"format": "xls"}, "format 'xls' is unknown; known: motive, "),
         (csv(), {"rate": "nan"}, "rate of nan Hz"),

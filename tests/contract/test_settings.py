@@ -122,7 +122,7 @@ def test_a_variable_is_read_by_the_type_of_its_setting(variable: str, text: str,
 
 
 BODY = "[[scenes]]\nname = 'a'\n[scenes.carried]\nname = 'b'\nsize = [1.0]\nposition = [0, 0, 0]\n"
-WRONG = {
+WRONG_SETTINGS = {
     "[webb]\nport = 1": "there is no setting webb; known here: bus, web",
     "[web]\nprot = 1": "there is no setting web.prot; known here: host, port",
     "[learning]\nguard = 0.5": "setting learning.guard was replaced by learning.min_separation",
@@ -160,9 +160,9 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("text", WRONG)
+@pytest.mark.parametrize("text", WRONG_SETTINGS)
 def test_a_wrong_file_is_one_sentence_that_names_the_setting(tmp_path: Path, text: str) -> None:
-    with pytest.raises(UnusableSettings, match=WRONG[text]) as caught:
+    with pytest.raises(UnusableSettings, match=WRONG_SETTINGS[text]) as caught:
         load(toml(tmp_path, text))
     assert "\n" not in str(caught.value)
 

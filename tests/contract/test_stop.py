@@ -19,7 +19,7 @@ from tests.contract.desk import Desk, refused
 from tests.contract.test_rest_work import planned
 from tests.waiting import wait_until
 
-MOVING = "execution-moving"
+MOVING_EXECUTION = "execution-moving"
 
 
 @pytest.fixture
@@ -30,8 +30,8 @@ def url(port: int) -> str:
 @pytest.fixture
 def moving(desk: Desk) -> str:
     """An execution that moves the arm, as far as the service knows."""
-    desk.station.store.put_execution(MOVING, None, ExecutorStatus(MOVING, ExecutorState.FOLLOWING))
-    return MOVING
+    desk.station.store.put_execution(MOVING_EXECUTION, None, ExecutorStatus(MOVING_EXECUTION, ExecutorState.FOLLOWING))
+    return MOVING_EXECUTION
 
 
 @contextmanager
@@ -58,25 +58,25 @@ def executor(desk: Desk, *statuses: ExecutorStatus) -> Iterator[list[Command]]:
         handle.close()
 
 
-FOLLOWING = ExecutorStatus(MOVING, ExecutorState.FOLLOWING)
-ENDING = ExecutorStatus(MOVING, ExecutorState.STOPPING, ending=True)
-HOLDING = ExecutorStatus(MOVING, ExecutorState.STOPPING)
+FOLLOWING_STATUS = ExecutorStatus(MOVING_EXECUTION, ExecutorState.FOLLOWING)
+ENDING = ExecutorStatus(MOVING_EXECUTION, ExecutorState.STOPPING, ending=True)
+STOPPING_STATUS = ExecutorStatus(MOVING_EXECUTION, ExecutorState.STOPPING)
 
 
 def test_a_stop_is_put_and_answered_by_the_status_that_shows_it(desk: Desk, moving: str) -> None:
-    with executor(desk, FOLLOWING, ENDING) as puts:
+    with executor(desk, FOLLOWING_STATUS, ENDING) as puts:
         answer = desk.post(f"/executions/{moving}/stop", headers={"Teachpath-Operator": "Ada"})
     assert answer.json()["status"] == {**answer.json()["status"], "state": "stopping", "ending": True}
     assert {(put.execution, put.who) for put in puts} == {(moving, "Ada")}
     # Its confirmation may have come while it was repeated.
     wait_until(lambda: "stop" not in {thread.name for thread in threading.enumerate()}, "nobody repeats that stop")
-    with executor(desk, FOLLOWING, ENDING) as puts:
+    with executor(desk, FOLLOWING_STATUS, ENDING) as puts:
         assert desk.post("/stop").json()["ending"]
     assert {put.execution for put in puts} == {""}
 
 
 def test_an_arm_that_only_comes_to_hold_is_not_said_to_be_stopped(desk: Desk, moving: str) -> None:
-    with executor(desk, FOLLOWING, HOLDING) as puts:
+    with executor(desk, FOLLOWING_STATUS, STOPPING_STATUS) as puts:
         refused(desk.post(f"/executions/{moving}/stop"), 503, "NOT STOPPED")
         assert len(puts) > 1
         assert desk.post("/stop").json()["error"] == "NotStopped"
@@ -90,10 +90,10 @@ def test_an_execution_that_the_executor_does_not_know_any_more_is_over(desk: Des
 
 def test_the_client_says_so_only_then(desk: Desk, url: str, moving: str) -> None:
     with Station(url) as station:
-        with executor(desk, FOLLOWING, ENDING):
+        with executor(desk, FOLLOWING_STATUS, ENDING):
             assert station.stop(moving).status.ending
             assert station.stop_arm().ending
-        with executor(desk, FOLLOWING, HOLDING):
+        with executor(desk, FOLLOWING_STATUS, STOPPING_STATUS):
             for stop in (lambda: station.stop(moving), station.stop_arm):
                 with pytest.raises(NotStopped, match="press the emergency stop of the arm"):
                     stop()
@@ -107,11 +107,11 @@ def test_the_command_line_says_so_only_then(desk: Desk, url: str, moving: str) -
     def said(*words: str) -> str:
         return CliRunner().invoke(app, ["stop", *words, "--url", url], catch_exceptions=False).stdout
 
-    with executor(desk, FOLLOWING, ENDING):
+    with executor(desk, FOLLOWING_STATUS, ENDING):
         assert said() == said(moving) == f"stopped: {moving} comes to rest on its path\n"
     with executor(desk, ExecutorStatus(), ExecutorStatus()):
         assert said() == "stopped: nothing moves the arm\n"
-    with executor(desk, FOLLOWING, HOLDING), pytest.raises(NotStopped):  # which ends with exit status 1
+    with executor(desk, FOLLOWING_STATUS, STOPPING_STATUS), pytest.raises(NotStopped):  # which ends with exit status 1
         said()
 
 
@@ -136,7 +136,7 @@ def test_an_order_to_an_executor_that_got_no_turn_for_a_while_is_answered_by_it(
 
     def answer(payload: bytes) -> bytes:
         heard.append(wire.decode_command(payload))
-        return wire.encode_status(FOLLOWING)
+        return wire.encode_status(FOLLOWING_STATUS)
 
     wait_until(lambda: desk.station.executions.status is None, "the executor is silent")
     handle = desk.station.bus.serve(desk.station.keys.executor_command, answer)

@@ -338,7 +338,7 @@ def test_a_demonstration_that_is_refused_leaves_no_gap(store: Store) -> None:
     assert store.add_demonstration(demonstration("c")).number == 2
 
 
-FINITE = st.floats(allow_nan=False, allow_infinity=False)
+FINITE_FLOATS = st.floats(allow_nan=False, allow_infinity=False)
 TEXT = st.text(max_size=20)
 COUNT = st.integers(0, 2**62)
 
@@ -347,10 +347,12 @@ COUNT = st.integers(0, 2**62)
     max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 )
 @given(
-    duration=FINITE,
+    duration=FINITE_FLOATS,
     created_ns=COUNT,
     source=TEXT,
-    calibration=st.builds(Calibration, TEXT, FINITE, st.tuples(*[FINITE] * 4), st.tuples(*[FINITE] * 3)),
+    calibration=st.builds(
+        Calibration, TEXT, FINITE_FLOATS, st.tuples(*[FINITE_FLOATS] * 4), st.tuples(*[FINITE_FLOATS] * 3)
+    ),
     statistics=st.builds(StreamStatistics, COUNT, notes=st.lists(TEXT, max_size=3).map(tuple)),
 )
 def test_a_demonstration_survives_to_the_last_bit(store: Store, **values: object) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.contract.identifiers import declared, python_identifiers, script_identifiers, words
+from tests.contract.identifiers import constants, declared, python_identifiers, script_identifiers, words
 
 ROOT = Path(__file__).parents[2]
 LEFT_OUT = ("vendor", "node_modules", "migrations", "_pb2")
@@ -69,7 +69,9 @@ FORMER_NAMES = {
     "Hand", "Look", "LOOKS", "Line", "MOST", "WAYS", "ONE", "Standing", "Finished", "Stretch", "MIRROR", "sign",
     "jumps", "here", "doing", "standing", "aside", "begun", "Piece", "Listener", "Post", "Prop",
 }  # fmt: skip
-PLAIN = {
+# Adverbs, pronouns, adjectives and participles, which alone do not say what a constant is.
+BARE_WORDS = frozenset((Path(__file__).parent / "bare_words.txt").read_text(encoding="utf-8").split())
+PLAIN_USES = {
     # file: names that have their plain meaning there
     "service/teachpath/motion/paths/ik_branches.py": {"jumps"},  # of a joint between two nodes
 }
@@ -98,9 +100,38 @@ def test_no_identifier_is_called_as_it_was() -> None:
     found = [
         f"{place}: {identifier}"
         for identifier, place in declared(ROOT, source_files(".py"))
-        if identifier.strip("_") in FORMER_NAMES and identifier.strip("_") not in PLAIN.get(place, ())
+        if identifier.strip("_") in FORMER_NAMES and identifier.strip("_") not in PLAIN_USES.get(place, ())
     ]
     assert found == []
+
+
+def test_no_constant_is_called_by_a_bare_word() -> None:
+    files = [
+        *source_files(".py", ".js"),
+        *(file for room in ("tests", "tools") for file in (ROOT / room).rglob("*.py")),
+        *(ROOT / "tests" / "page").glob("*.js"),
+    ]
+    files = [file for file in files if "node_modules" not in file.parts]
+    named = [
+        (file.relative_to(ROOT).as_posix(), constant)
+        for file in files
+        for constant in constants(file.read_text(encoding="utf-8"), script=file.suffix == ".js")
+    ]
+    assert len(named) > 1000
+    assert [f"{place}: {constant}" for place, constant in named if constant.strip("_").lower() in BARE_WORDS] == []
+
+
+@pytest.mark.parametrize(
+    ("source", "script"),
+    [
+        ("AGAIN = 1", False),
+        ("from typing import Final\n\nFIRST: Final = 1", False),
+        ("A, _LEFT = 1, 2", False),
+        ("export const AWAY = 1;", True),
+    ],
+)
+def test_every_kind_of_constant_is_read(source: str, script: bool) -> None:
+    assert any(name.strip("_").lower() in BARE_WORDS for name in constants(source, script=script))
 
 
 def test_the_messages_on_the_bus_have_no_such_word() -> None:

@@ -17,14 +17,14 @@ from teachpath.learning.selection.features import positions_and_velocities
 from teachpath.learning.selection.likelihoods import score_likelihoods
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
-from tests.experiments.selection_cases import CASES, FAULTLESS, FAULTY
+from tests.experiments.selection_cases import CASES, FAULTLESS_CASES, FAULTY_CASES
 from tests.experiments.trials import rate
 
 MODEL = "hidden Markov model"
 MODEL_SPREAD = 0.8  # nats a frame, usual spread of faultless demonstrations
-PARTS = (*(str(part) for part in Part), MODEL)
+PART_NAMES = (*(str(part) for part in Part), MODEL)
 SETTINGS = LearningSettings()
-KEPT = SETTINGS.keep
+KEPT_COUNT = SETTINGS.keep
 
 Scores = Mapping[str, Array]  # for each part (m,)
 
@@ -48,7 +48,7 @@ def left_out(found: Scores, parts: Sequence[str]) -> Array:
     """Return who is left out by these parts: (m,)."""
     worst = np.max([found[part] for part in parts], axis=0)
     out = worst > SETTINGS.outlier_limit
-    out[np.argsort(worst, kind="stable")[:KEPT]] = False
+    out[np.argsort(worst, kind="stable")[:KEPT_COUNT]] = False
     return np.asarray(out)
 
 
@@ -57,7 +57,7 @@ def summary(found: Sequence[tuple[str, dict[str, list[float]]]]) -> dict[str, An
 
     Of a faultless case the share of demonstrations left out, else how often all marked ones are.
     """
-    whole = [part for part in PARTS if part != MODEL]
+    whole = [part for part in PART_NAMES if part != MODEL]
     document: dict[str, Any] = {}
     for key, case in CASES.items():
         runs = [{part: np.array(z) for part, z in scores.items()} for name, scores in found if name == key]
@@ -70,22 +70,22 @@ def summary(found: Sequence[tuple[str, dict[str, list[float]]]]) -> dict[str, An
         document[key] = {
             "whole": rated(whole),
             "without": {part: rated([other for other in whole if other != part]) for part in whole},
-            "alone": {part: rated([part]) for part in PARTS},
+            "alone": {part: rated([part]) for part in PART_NAMES},
         }
     return document
 
 
 def table(found: Mapping[str, Any]) -> str:
     """Return the ablation as a table."""
-    heads = "".join(f"<th>{part}" for part in PARTS)
+    heads = "".join(f"<th>{part}" for part in PART_NAMES)
     rows = []
-    for case in (*FAULTLESS, *FAULTY):
+    for case in (*FAULTLESS_CASES, *FAULTY_CASES):
         of = found[case.key]
         whole = _revived(of["whole"])
         asked = f"≥ {case.target:.1%}" if case.marked else f"≤ {case.target:.1%}"
-        alone = "".join(f"<td>{_revived(of['alone'][part]).share:.1%}" for part in PARTS)
+        alone = "".join(f"<td>{_revived(of['alone'][part]).share:.1%}" for part in PART_NAMES)
         rows.append(f"<tr><td>{case.title}<td>{asked}<td>{whole}{alone}")
-        rows.append(f"<tr><td>, without<td><td>{''.join(_less(of, part, whole) for part in PARTS)}")
+        rows.append(f"<tr><td>, without<td><td>{''.join(_less(of, part, whole) for part in PART_NAMES)}")
     return (
         "<h2>What each part of the selection brings</h2>"
         "<table><caption><b>Table VII.</b> Left out by mode default: of faultless sets the share of demonstrations, of "

@@ -27,7 +27,7 @@ from teachpath.nurbs import unit_quaternions
 from teachpath.records import Array, Trajectory
 from tests.experiments import adaptation_baselines as baselines
 from tests.experiments import adaptation_report
-from tests.experiments.adaptation_report import ADAPTED, LINE, SAME_FRAME, Row
+from tests.experiments.adaptation_report import LINE, METHOD_NAMES, SAME_FRAME, Row
 from tests.experiments.trials import rate
 from tests.unit.learning import synthetic
 
@@ -70,7 +70,7 @@ class Prediction:
 def synthetic_sets(count: int = 12) -> dict[str, list[Trajectory]]:
     """Demonstrations of three ways, each from starts and to goals that scatter by 12 cm."""
     sets = {}
-    for way, vias in enumerate(synthetic.WAYS):
+    for way, vias in enumerate(synthetic.WAY_POINTS):
         rng = np.random.default_rng([way, 21])
         shown = {}
         for number in range(count):
@@ -110,14 +110,14 @@ def predict(shown: Sequence[Trajectory], truth: Trajectory) -> Prediction:
     target = Target(course[0], course[-1], *([] if turns is None else turns[[0, -1]]))
     found = adapted_to({str(number): each for number, each in enumerate(shown)}, target, SETTINGS)
     u = even_parameters(found.curve, POINTS)
-    paths[ADAPTED] = found.curve(u)
+    paths[METHOD_NAMES] = found.curve(u)
     off = {name: np.linalg.norm(path - course, axis=1) for name, path in paths.items()}
     rms = {name: float(np.sqrt(np.mean(each**2))) for name, each in off.items()}
     turn = None
     if found.orientation is not None and turns is not None:
         turn = float(np.sqrt(np.mean(rotation_angles(unit_quaternions(found.orientation, u), turns) ** 2)))
     largest = {name: float(each.max()) for name, each in off.items()}
-    return Prediction(rms, largest, rms[ADAPTED] < two_sd(found), turn)
+    return Prediction(rms, largest, rms[METHOD_NAMES] < two_sd(found), turn)
 
 
 def measure(folder: Path | None, count: int, runs: int, seed: int) -> list[Prediction]:
@@ -133,7 +133,7 @@ def measure(folder: Path | None, count: int, runs: int, seed: int) -> list[Predi
 
 def summary(found: Mapping[int, Sequence[Prediction]]) -> list[Row]:
     """Summarize every method for every number of demonstrations; distances in metres, shares of the straight line's."""
-    return [_row(count, name, of) for count, of in found.items() for name in (*METHODS, ADAPTED)]
+    return [_row(count, name, of) for count, of in found.items() for name in (*METHODS, METHOD_NAMES)]
 
 
 def _row(count: int, name: str, found: Sequence[Prediction]) -> Row:
@@ -148,7 +148,7 @@ def _row(count: int, name: str, found: Sequence[Prediction]) -> Row:
         "interval": _interval(rms, line),
         "largest": float(largest / line_largest),
     }
-    if name == ADAPTED:
+    if name == METHOD_NAMES:
         turns = [each.turn for each in found if each.turn is not None]
         row["held"] = rate([each.held for each in found]).document()
         row["turn"] = float(np.degrees(np.median(turns))) if turns else None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any
 
-LINE, SAME_FRAME, ADAPTED = "straight line", "TP-GMM, same frame and ends", "adapted path"
+LINE, SAME_FRAME, METHOD_NAMES = "straight line", "TP-GMM, same frame and ends", "adapted path"
 SHARES = {3: 0.5, 5: 0.45, 8: 0.43}  # of the straight line's median distance, asked by number of demonstrations
 RIVALS = {SAME_FRAME: 0.95, "TP-GMM": 0.65, "DMP": 0.65, "ProMP": 0.65}  # likewise, of theirs by five
 
@@ -18,7 +18,7 @@ def targets(rows: Sequence[Row]) -> list[tuple[str, str, str, bool]]:
     of = {(row["n"], row["method"]): row for row in rows}
     told = []
     for count, share in SHARES.items():
-        row = of[count, ADAPTED]
+        row = of[count, METHOD_NAMES]
         low, high = row["interval"]
         what = f"adapted by {count} demonstrations"
         measured = f"{row['share']:.3f} ({low:.3f} to {high:.3f})"
@@ -29,9 +29,9 @@ def targets(rows: Sequence[Row]) -> list[tuple[str, str, str, bool]]:
         if row["turn"] is not None:
             told.append((f"{what}: orientation", "≤ 8°", f"{row['turn']:.1f}°", row["turn"] <= 8))
     for name, share in RIVALS.items():
-        ratio = of[5, ADAPTED]["median"] / of[5, name]["median"]
+        ratio = of[5, METHOD_NAMES]["median"] / of[5, name]["median"]
         told.append((f"adapted by 5, median RMS, of that of {name}", f"≤ {share}", f"{ratio:.3f}", ratio <= share))
-    p90 = of[5, ADAPTED]["p90"] / of[5, SAME_FRAME]["p90"]
+    p90 = of[5, METHOD_NAMES]["p90"] / of[5, SAME_FRAME]["p90"]
     told.append((f"adapted by 5, 90th percentile, of that of {SAME_FRAME}", "≤ 0.92", f"{p90:.3f}", p90 <= 0.92))
     return told
 
@@ -48,7 +48,7 @@ def section(rows: Sequence[Row], data: str) -> list[str]:
             f"<td>{row['held']['share']:.1%}" if "held" in row else "<td>",
             f"<td>{row['turn']:.1f}°" if row.get("turn") else "<td>",
         ]
-        lines.append(f"<tr{' class=last' if row['method'] == ADAPTED else ''}>{''.join(cells)}")
+        lines.append(f"<tr{' class=last' if row['method'] == METHOD_NAMES else ''}>{''.join(cells)}")
     heads = "<th>RMS, median / p90 [cm]<th>of the line's<th>largest, of the line's<th>held by 2 sd<th>orientation"
     return [
         "<h2>An object that lies elsewhere</h2>",

@@ -14,8 +14,8 @@ from teachpath.learning.resampling import arc_lengths, at_equal_arc_length, smoo
 from teachpath.records import Array, Trajectory
 from tests.unit.learning import synthetic
 
-TIDY = {"via_spread": 0.003, "end_spread": 0.001, "tremor": 0.0005, "noise": 0.0005}  # m
-UNTIDY = {"via_spread": 0.03}
+TIDY_SPREADS = {"via_spread": 0.003, "end_spread": 0.001, "tremor": 0.0005, "noise": 0.0005}  # m
+UNTIDY_SPREADS = {"via_spread": 0.03}
 MOUSE = {"via_spread": 0.002, "end_spread": 0.001, "tremor": 0.0002, "noise": 0.0002}
 Labelled = tuple[list[Trajectory], list[int]]
 
@@ -41,7 +41,7 @@ class Case:
 
 
 def known_ways(
-    seed: int, sizes: Sequence[int], ways: Sequence[Array] = synthetic.WAYS, pace: float = 0.2, **hand: Any
+    seed: int, sizes: Sequence[int], ways: Sequence[Array] = synthetic.WAY_POINTS, pace: float = 0.2, **hand: Any
 ) -> Labelled:
     """So many demonstrations of each way, in random order, whose durations differ by up to `pace`."""
     rng = np.random.default_rng([seed, 14])
@@ -88,7 +88,7 @@ def starts_apart(seed: int, sizes: Sequence[int], apart: float) -> Labelled:
 
 
 def one_way(seed: int, count: int, pace: float = 0.45, **hand: Any) -> Labelled:
-    return known_ways(seed, (count,), synthetic.WAYS[1:2], pace, **hand)
+    return known_ways(seed, (count,), synthetic.WAY_POINTS[1:2], pace, **hand)
 
 
 def one_wiggles(seed: int, **hand: Any) -> Labelled:
@@ -117,7 +117,7 @@ def rests(rng: np.random.Generator, shown: Trajectory, rest: float, noise: float
 def differ_in_part(seed: int, sizes: Sequence[int], height: float, **hand: Any) -> Labelled:
     """One way; some make a bump of this height [m] over a third of the path, at a random place to a random side."""
     rng = np.random.default_rng([seed, 20])
-    shown, truth = known_ways(seed, sizes, (synthetic.WAYS[1],) * len(sizes), **hand)
+    shown, truth = known_ways(seed, sizes, (synthetic.WAY_POINTS[1],) * len(sizes), **hand)
     middle, side = rng.uniform(0.3, 0.7), np.cross(synthetic.GOAL - synthetic.START, rng.normal(size=3))
     bumped = []
     for each, way in zip(shown, truth, strict=True):
@@ -132,7 +132,7 @@ def two_agree_exactly(seed: int, apart: float = 0.015, noise: float = 1e-4) -> L
     """Two along one way that agree to 0.1 mm, and two along another on average up to `apart` [m] from each other."""
     rng = np.random.default_rng([seed, 21])
     quiet = dict.fromkeys(("via_spread", "end_spread", "tremor", "noise", "warp"), 0.0)
-    tight, loose = (synthetic.demonstration(rng, synthetic.WAYS[way], **quiet) for way in (0, 1))
+    tight, loose = (synthetic.demonstration(rng, synthetic.WAY_POINTS[way], **quiet) for way in (0, 1))
     side = rng.normal(size=3)
     bow = np.sin(np.pi * np.linspace(0, 1, len(loose)))[:, None] * np.pi / 2 * side / np.linalg.norm(side)
     shown = [
@@ -150,20 +150,20 @@ def _once(sizes: tuple[int, ...]) -> list[Case]:
     ]
 
 
-ONCE = tuple(
+SINGLE_CASES = tuple(
     case for sizes in ((1, 1, 1), (2, 1, 1), (4, 1, 1), (5, 1, 1), (3, 3, 1), (2, 2, 1)) for case in _once(sizes)
 )
-OFTEN = (
+OFTEN_CASES = (
     Case("(5, 3, 4), the ways of the paper", partial(known_ways, sizes=(5, 3, 4))),
     Case("(5, 3, 4), ±45 % duration", partial(known_ways, sizes=(5, 3, 4), pace=0.45, warp=0.25)),
-    Case("(5, 3, 4), an untidy hand", partial(known_ways, sizes=(5, 3, 4), **UNTIDY)),
+    Case("(5, 3, 4), an untidy hand", partial(known_ways, sizes=(5, 3, 4), **UNTIDY_SPREADS)),
     Case("(5, 3, 4), ways 6 cm apart or more", partial(drawn_ways, sizes=(5, 3, 4), least=0.06)),
-    Case("(3, 3), a tidy hand, ways 4 cm apart or more", partial(drawn_ways, sizes=(3, 3), least=0.04, **TIDY)),
+    Case("(3, 3), a tidy hand, ways 4 cm apart or more", partial(drawn_ways, sizes=(3, 3), least=0.04, **TIDY_SPREADS)),
     Case("eight ways three times", partial(drawn_ways, sizes=(3,) * 8, least=0.10), called=0.05),
     Case("twelve ways three times", partial(drawn_ways, sizes=(3,) * 12, least=0.08)),
     Case("two that agree to 0.1 mm, two within 1.5 cm", two_agree_exactly),
 )
-PARTLY = (
+PARTIAL_CASES = (
     *(
         Case(f"{sizes}, a bump of 4 cm", partial(differ_in_part, sizes=sizes, height=0.04), 0.9, doubt=True)
         for sizes in ((2, 2), (3, 2), (3, 3), (4, 2), (6, 6))
@@ -171,19 +171,22 @@ PARTLY = (
     *(
         Case(
             f"{sizes}, a tidy hand, a bump of 2 cm",
-            partial(differ_in_part, sizes=sizes, height=0.02, **TIDY),
+            partial(differ_in_part, sizes=sizes, height=0.02, **TIDY_SPREADS),
             0.9,
             doubt=True,
         )
         for sizes in ((2, 2), (3, 3), (4, 2))
     ),
 )
-ONE = (
+ONE_WAY_CASES = (
     *(Case(f"one way, {count} times, ±45 % duration", partial(one_way, count=count)) for count in (2, 3, 4, 5, 12)),
-    *(Case(f"one way, {count} times, an untidy hand", partial(one_way, count=count, **UNTIDY)) for count in (3, 5, 12)),
-    Case("one way, a tidy hand, 5 times", partial(one_way, count=5, **TIDY)),
+    *(
+        Case(f"one way, {count} times, an untidy hand", partial(one_way, count=count, **UNTIDY_SPREADS))
+        for count in (3, 5, 12)
+    ),
+    Case("one way, a tidy hand, 5 times", partial(one_way, count=5, **TIDY_SPREADS)),
     Case("one way, one of five wiggles", one_wiggles),
-    Case("one way, a tidy hand, one of five wiggles", partial(one_wiggles, **TIDY)),
+    Case("one way, a tidy hand, one of five wiggles", partial(one_wiggles, **TIDY_SPREADS)),
     Case("one way, six times, every other one rests for 3 s", partial(every_other_rests, count=6)),
     Case("one way, four times with the mouse", partial(one_way, count=4, **MOUSE)),
 )
@@ -204,10 +207,14 @@ def _stops(count: int, low: float, high: float) -> Case:
     return Case(title, partial(one_stops, count=count, shares=(low, high)), stops=1)
 
 
-NEARLY = (0.84, 0.91)
-INCOMPLETE = (
-    *(_stops(count, low, high) for count in (3, 6) for low, high in (NEARLY, (0.6, 0.8), (0.4, 0.6))),
-    Case("one of 6 of a tidy hand stops at 84 to 91 %", partial(one_stops, count=6, shares=NEARLY, **TIDY), stops=1),
+NEARLY_CORRECT = (0.84, 0.91)
+INCOMPLETE_CASES = (
+    *(_stops(count, low, high) for count in (3, 6) for low, high in (NEARLY_CORRECT, (0.6, 0.8), (0.4, 0.6))),
+    Case(
+        "one of 6 of a tidy hand stops at 84 to 91 %",
+        partial(one_stops, count=6, shares=NEARLY_CORRECT, **TIDY_SPREADS),
+        stops=1,
+    ),
     Case(
         "one of (5, 3, 4) stops at 50 to 90 %", partial(one_stops, count=0, sizes=(5, 3, 4), shares=(0.5, 0.9)), stops=1
     ),
@@ -219,13 +226,13 @@ ENDS = (
         for apart in (0.05, 0.10)
     ),
     Case("(3, 3), starts 5 cm apart", partial(starts_apart, sizes=(3, 3), apart=0.05)),
-    Case("(3, 3), a tidy hand, goals 2 cm apart", partial(goals_apart, sizes=(3, 3), apart=0.02, **TIDY), 0.0),
+    Case("(3, 3), a tidy hand, goals 2 cm apart", partial(goals_apart, sizes=(3, 3), apart=0.02, **TIDY_SPREADS), 0.0),
 )
 GROUPS = {
-    "Ways shown once": ONCE,
-    "Ways shown often": OFTEN,
-    "Ways that differ in a third of the path": PARTLY,
-    "One way": ONE,
+    "Ways shown once": SINGLE_CASES,
+    "Ways shown often": OFTEN_CASES,
+    "Ways that differ in a third of the path": PARTIAL_CASES,
+    "One way": ONE_WAY_CASES,
     "Ends": ENDS,
-    "Incomplete": INCOMPLETE,
+    "Incomplete": INCOMPLETE_CASES,
 }

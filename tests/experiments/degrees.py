@@ -27,7 +27,7 @@ ARM = Arm.of_variant()
 
 DEGREES = (3, 4, 5)
 RATE = 250.0  # Hz
-DENSE = 2001
+DENSE_POINTS = 2001
 CENTRE = np.array([0.5, 0.0, 0.65])  # m, of the paths, in the midst of the arm's reach
 KINDS = ("way", *SHAPES)
 MEASURES = (
@@ -64,7 +64,7 @@ def degrees_once(name: str, seed: int) -> dict[int, Row] | None:
 
 def _bends(curve: Curve) -> Row:
     """Return the largest curvature, and the RMS third derivative by arc length, which makes jerk at constant speed."""
-    u = np.linspace(0.0, 1.0, DENSE)
+    u = np.linspace(0.0, 1.0, DENSE_POINTS)
     first, second = curve(u, 1), curve(u, 2)
     speed = np.linalg.norm(first, axis=1)
     curvature = np.linalg.norm(np.cross(first, second), axis=1) / speed**3

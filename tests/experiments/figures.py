@@ -26,13 +26,13 @@ from tests.experiments.trials import MODES, course, learn, settings
 
 PAGE_STYLE = Path(__file__).parents[2] / "clients" / "web" / "style.css"
 PALETTE = re.findall(r"--way-\d+: (#[0-9a-f]{6})", PAGE_STYLE.read_text())  # as on the page
-WAY = dict(enumerate(PALETTE, 1))  # clusters, as in the 3-D view
+WAY_COLORS = dict(enumerate(PALETTE, 1))  # clusters, as in the 3-D view
 MODE = {"default": PALETTE[0], "repaired": PALETTE[4], "paper": PALETTE[3]}
 MARK = {1: "o", 2: "s", 3: "^"}
-INK, PALE, QUOTED = "#222222", "#b8b8b8", "#666666"
+INK, PALE_COLOR, QUOTED_COLOR = "#222222", "#b8b8b8", "#666666"
 VIEWS = (("from above", 1, 0), ("from the side", 1, 2))  # abscissa, ordinate
 AXES = "xyz"
-LOWEST = -1600  # log-likelihood at which the Fig. 4 of the paper ends; a blind start is far below
+LOWEST_LOG_LIKELIHOOD = -1600  # log-likelihood at which the Fig. 4 of the paper ends; a blind start is far below
 
 STYLE = {
     "figure.dpi": 160,
@@ -73,7 +73,7 @@ def convergence(file: Path, learned: Mapping[str, Learned]) -> None:
             for cluster in learned[mode].clusters:
                 if len(cluster.convergence) == 0:
                     continue
-                colour = WAY[(cluster.index - 1) % len(WAY) + 1]
+                colour = WAY_COLORS[(cluster.index - 1) % len(WAY_COLORS) + 1]
                 iterations = range(1, len(cluster.convergence) + 1)
                 marker = MARK.get(cluster.index, "D")
                 axis.plot(iterations, cluster.convergence, color=colour, marker=marker, ms=4, lw=1.6)
@@ -87,11 +87,13 @@ def convergence(file: Path, learned: Mapping[str, Learned]) -> None:
                 )
             axis.set_xlim(0.5, 13.2)
             axis.set_xticks(range(1, 11))
-        axes[0].set_ylim(LOWEST, max(cluster.convergence[-1] for cluster in learned["paper"].clusters) + 60)
+        axes[0].set_ylim(
+            LOWEST_LOG_LIKELIHOOD, max(cluster.convergence[-1] for cluster in learned["paper"].clusters) + 60
+        )
         axes[0].set_ylabel("log-likelihood of the cluster")
         for cluster, level in quoted.SUMS.items():
-            axes[0].axhline(level, color=WAY[cluster], lw=1.1, ls=(0, (2, 3)), zorder=1)
-        axes[0].plot([], [], color=QUOTED, lw=0.9, ls=(0, (2, 3)), label="end levels printed in the paper")
+            axes[0].axhline(level, color=WAY_COLORS[cluster], lw=1.1, ls=(0, (2, 3)), zorder=1)
+        axes[0].plot([], [], color=QUOTED_COLOR, lw=0.9, ls=(0, (2, 3)), label="end levels printed in the paper")
         axes[0].legend(loc="lower right", fontsize=7.5)
 
 
@@ -113,7 +115,7 @@ def paths(file: Path, demonstrations: Mapping[str, Trajectory], learned: Mapping
 
 def _paths_of(axis: Axes, demonstrations: Mapping[str, Trajectory], learned: Learned, across: int, up: int) -> None:
     for cluster in learned.clusters:
-        colour = WAY[(cluster.index - 1) % len(WAY) + 1]
+        colour = WAY_COLORS[(cluster.index - 1) % len(WAY_COLORS) + 1]
         for score in cluster.scores:
             points = 100 * demonstrations[score.demonstration].positions[::4]
             alpha = 0.75 if score.selected else 0.22
@@ -122,7 +124,7 @@ def _paths_of(axis: Axes, demonstrations: Mapping[str, Trajectory], learned: Lea
     for cluster in learned.clusters:
         curve = 100 * course(learned, cluster.index)
         axis.plot(curve[:, across], curve[:, up], color="white", lw=4.0)
-        axis.plot(curve[:, across], curve[:, up], color=WAY[(cluster.index - 1) % len(WAY) + 1], lw=2.2)
+        axis.plot(curve[:, across], curve[:, up], color=WAY_COLORS[(cluster.index - 1) % len(WAY_COLORS) + 1], lw=2.2)
 
 
 def _label_views(axes: Any) -> None:
@@ -140,7 +142,9 @@ def wiggles(file: Path, demonstrations: Mapping[str, Trajectory], learned: Mappi
         for column, mode in zip(axes.T, MODES, strict=True):
             kept = sorted(s.demonstration for c in learned[mode].clusters for s in c.scores if s.selected)
             column[0].set_title(f"mode {mode}", loc="left")
-            column[0].set_title(f"learns from {', '.join(kept)}", loc="right", color=QUOTED, weight="normal", size=9)
+            column[0].set_title(
+                f"learns from {', '.join(kept)}", loc="right", color=QUOTED_COLOR, weight="normal", size=9
+            )
             for axis, (_, across, up) in zip(column, VIEWS, strict=True):
                 for name, trajectory in demonstrations.items():
                     points = 100 * trajectory.positions
@@ -166,16 +170,16 @@ def rejection(file: Path, rates: Mapping[str, Mapping[str, Rate]]) -> None:
     with sheet(file, 1, 1, (8.6, 5.6)) as (figure, ((axis,),)):
         for row, scenario in enumerate(SCENARIOS):
             _ladder(axis, row, {mode: rates[scenario.key][mode] for mode in MODES})
-            axis.plot([scenario.chance] * 2, [row - 0.42, row + 0.42], color=QUOTED, lw=1.4, ls=(0, (2, 2)))
+            axis.plot([scenario.chance] * 2, [row - 0.42, row + 0.42], color=QUOTED_COLOR, lw=1.4, ls=(0, (2, 2)))
             if scenario.key != "control":
                 axis.plot([scenario.target] * 2, [row - 0.42, row + 0.42], color=INK, lw=1.2)
-        axis.plot(quoted.REJECTED, -0.42, marker="v", color=INK, ms=6, clip_on=False)
+        axis.plot(quoted.REJECTED_SHARE, -0.42, marker="v", color=INK, ms=6, clip_on=False)
         _rows(axis, [scenario.title for scenario in SCENARIOS])
         axis.set_xlim(0, 1.015)
         axis.set_xlabel("runs in which it is not among the two most consistent")
         handles = [
             *(Line2D([], [], color=MODE[mode], marker="o", lw=2, label=f"mode {mode}") for mode in MODES),
-            Line2D([], [], color=QUOTED, lw=1.4, ls=(0, (2, 2)), label="chance"),
+            Line2D([], [], color=QUOTED_COLOR, lw=1.4, ls=(0, (2, 2)), label="chance"),
             Line2D([], [], color=INK, lw=1.2, label="asked of mode default"),
             Line2D([], [], color=INK, lw=0, marker="v", label="printed in the paper"),
         ]
@@ -187,7 +191,7 @@ def places(file: Path, rates: Mapping[str, Sequence[Rate | None]]) -> None:
     with sheet(file, 1, 3, (9.0, 2.7), sharey=True) as (_, (axes,)):
         for axis, mode in zip(axes, MODES, strict=True):
             axis.axhspan(0.54, 0.66, color="#f0f0f0", zorder=0)
-            axis.axhline(0.6, color=QUOTED, lw=1.2, ls=(0, (2, 2)))
+            axis.axhline(0.6, color=QUOTED_COLOR, lw=1.2, ls=(0, (2, 2)))
             for place, rate in enumerate(rates[mode], 1):
                 if rate is None:
                     continue
@@ -232,10 +236,10 @@ def repetitions(file: Path, rates: Mapping[str, Sequence[float]]) -> None:
                 at = near[:i].count(value) + 1
                 up = at // 2 * (-1) ** at * step
                 axis.plot(value, row + up, "o", color=MODE[mode], ms=6, mec="white", mew=0.6)
-        axis.axvline(0.6, color=QUOTED, lw=1.2, ls=(0, (2, 2)))
-        axis.axvline(quoted.REJECTED, color=INK, lw=1.2)
-        axis.text(0.595, 1.62, "chance", ha="right", color=QUOTED, fontsize=8)
-        axis.text(quoted.REJECTED - 0.005, 1.62, "the paper's one data set", ha="right", color=INK, fontsize=8)
+        axis.axvline(0.6, color=QUOTED_COLOR, lw=1.2, ls=(0, (2, 2)))
+        axis.axvline(quoted.REJECTED_SHARE, color=INK, lw=1.2)
+        axis.text(0.595, 1.62, "chance", ha="right", color=QUOTED_COLOR, fontsize=8)
+        axis.text(quoted.REJECTED_SHARE - 0.005, 1.62, "the paper's one data set", ha="right", color=INK, fontsize=8)
         _rows(axis, ["mode paper", "mode repaired"])
         axis.set_ylim(1.75, -0.75)
         axis.set_xlim(0, 1.015)
@@ -250,7 +254,7 @@ def shapes(file: Path) -> None:
             across, up = _widest(mean)
             for trajectory in demonstrations.values():
                 points = 100 * trajectory.positions
-                axis.plot(points[:, across], points[:, up], color=PALE, lw=0.7)
+                axis.plot(points[:, across], points[:, up], color=PALE_COLOR, lw=0.7)
             for mode in ("paper", "default"):
                 learned = learn(demonstrations, settings(mode, 1, threshold=1.0))
                 curve = 100 * course(learned, 1)
@@ -260,7 +264,7 @@ def shapes(file: Path) -> None:
             axis.set_xlabel(f"{AXES[across]} [cm]")
             axis.set_ylabel(f"{AXES[up]} [cm]", labelpad=1)
         handles = [
-            Line2D([], [], color=PALE, lw=1.2, label="demonstrations"),
+            Line2D([], [], color=PALE_COLOR, lw=1.2, label="demonstrations"),
             *(Line2D([], [], color=MODE[mode], lw=2.2, label=f"mode {mode}") for mode in ("paper", "default")),
         ]
         figure.legend(handles=handles, loc="outside lower center", ncols=3)

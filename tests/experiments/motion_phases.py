@@ -18,7 +18,7 @@ from teachpath.recording.motion_phases import PhaseEvidence, find_motion_phases
 from teachpath.records import Array
 from tests.experiments.adaptation import LABEL_ERRORS, SAMPLING_PERIOD
 
-FAR = 0.05  # [m] from the label; nothing that is called sure may lie farther
+FAR_DISTANCE = 0.05  # [m] from the label; nothing that is called sure may lie farther
 Change = Callable[[Array, Array, Array, np.random.Generator], Array]
 
 
@@ -66,7 +66,7 @@ CHANGES: dict[str, Change] = {
     "rests at taking": lambda p, g, r, rng: _rest(p, int(g), 100, rng),
     "spikes of 20 cm": _spikes,
 }
-UNDECIDABLE: dict[str, Change] = {
+UNDECIDABLE_CASES: dict[str, Change] = {
     "a pause on the way": lambda p, g, r, rng: _rest(p, int(g + r) // 2, 60, rng),
     "up to the middle of the transport": lambda p, g, r, rng: p[: int(g + r) // 2],
     "from the middle of the transport": lambda p, g, r, rng: p[int(g + r) // 2 :],
@@ -77,8 +77,10 @@ def main() -> None:
     """Print how far the places found are from the labelled ones."""
     if len(sys.argv) != 2 or not (recordings := labelled(Path(sys.argv[1]))):
         raise SystemExit(f"{__doc__}\n\nFOLDER has to hold *.traj files with their *.traj.res")
-    table = Table("recordings", "sure", "median cm", "p90 cm", "largest cm", f"sure, over {100 * FAR:.0f} cm off")
-    for what, change in (CHANGES | UNDECIDABLE).items():
+    table = Table(
+        "recordings", "sure", "median cm", "p90 cm", "largest cm", f"sure, over {100 * FAR_DISTANCE:.0f} cm off"
+    )
+    for what, change in (CHANGES | UNDECIDABLE_CASES).items():
         table.add_row(what, *_row(recordings, change, decidable=what in CHANGES))
     Console().print(table)
 
@@ -94,7 +96,7 @@ def _row(recordings: list[Labelled], change: Change, *, decidable: bool) -> list
         sure += 1
         error = np.linalg.norm(found.places - one.places, axis=1)
         errors += error.tolist()
-        far += bool(error.max() > FAR)
+        far += bool(error.max() > FAR_DISTANCE)
     share = f"{sure} of {len(recordings)}"
     if not errors or not decidable:
         return [share, "", "", "", str(far)]

@@ -10,4 +10,4 @@ TABLE_1 = {
 }
 SUMS = {cluster: sum(value for _, value in rows) for cluster, rows in TABLE_1.items()}
 ITERATIONS = 4  # "converges in 4 iterations"
-REJECTED = 0.94  # of 1000 repetitions on one data set
+REJECTED_SHARE = 0.94  # of 1000 repetitions on one data set

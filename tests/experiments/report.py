@@ -29,7 +29,7 @@ from tests.experiments.targets import targets, worst
 from tests.experiments.trials import BY_KEY, MODES, THRESHOLD
 
 HANDS = "the recordings of a hand"
-SYNTHETIC = "36 synthetic demonstrations with scattered starts and goals"
+SYNTHETIC_CAPTION = "36 synthetic demonstrations with scattered starts and goals"
 
 
 def page(found: Found, folder: Path) -> str:
@@ -54,7 +54,7 @@ def page(found: Found, folder: Path) -> str:
             *recorded_sets.section(found["recorded_sets"]),
             *_shapes(found, folder),
             *_degrees(found),
-            *adaptation_report.section(found["adaptation"], HANDS if found["made"]["hands"] else SYNTHETIC),
+            *adaptation_report.section(found["adaptation"], HANDS if found["made"]["hands"] else SYNTHETIC_CAPTION),
             *stream_faults.section(found["stream_faults"]),
             *_verdicts(found),
             *_method(found),
@@ -81,9 +81,10 @@ def _head(found: Found) -> list[str]:
         f"by 2.5 cm is rejected in {wiggle['paper'].share:.1%} of {wiggle['paper'].n} runs by mode paper, in "
         f"{wiggle['repaired'].share:.1%} by mode repaired and in {wiggle['default'].share:.1%} by mode default. "
         f"Without any wiggle the figures are {control['paper'].share:.1%}, {control['repaired'].share:.1%} and "
-        f"{control['default'].share:.1%}, where blind choice gives 60 %. The published rate is {quoted.REJECTED:.0%}. "
-        f"Three ways shown at very different speed are told apart in {speeds['paper'].share:.0%} of the seeds as "
-        f"published and in {speeds['default'].share:.0%} by mode default. {ends}</p></div>",
+        f"{control['default'].share:.1%}, where blind choice gives 60 %. "
+        f"The published rate is {quoted.REJECTED_SHARE:.0%}. Three ways shown at very different speed "
+        f"are told apart in {speeds['paper'].share:.0%} of the seeds as published and "
+        f"in {speeds['default'].share:.0%} by mode default. {ends}</p></div>",
     ]
 
 

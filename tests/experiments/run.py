@@ -42,7 +42,7 @@ PROCESSES = 2
 CHUNK = 5  # runs sent to a process at once
 SEED = 1  # of the single runs that tables and pictures show
 # What is repeated, in the order of the outcomes of `_repeated`.
-PARTS = (
+EXPERIMENT_PARTS = (
     "selection",
     "grouping",
     "shapes",
@@ -81,7 +81,7 @@ class Sizes:
         return Sizes(**{name: max(1, round(share * count)) for name, count in asdict(self).items()})
 
 
-QUICK = Sizes(
+QUICK_SIZES = Sizes(
     selection=8,
     ablation=8,
     grouping=4,
@@ -108,7 +108,7 @@ def main() -> None:
     asked = parser.parse_args()
     for name in THREADS:
         os.environ[name] = "1"  # read by the processes to come: they are many enough
-    sizes = QUICK if asked.quick else Sizes().reduced(asked.share)
+    sizes = QUICK_SIZES if asked.quick else Sizes().reduced(asked.share)
     asked.out.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     outcomes, parts = _repeated(sizes, asked.hands, asked.sets)
@@ -153,7 +153,7 @@ def _repeated(sizes: Sizes, hands: Path | None, sets: Path | None) -> tuple[tupl
     """Run all that is repeated, in processes.
 
     Returns:
-        the outcomes of each of `PARTS`, see `results.summary`, and how long each took, in seconds of a processor.
+        the outcomes of each of `EXPERIMENT_PARTS`, see `results.summary`, and how long each took [s of a processor].
     """
     work: list[tuple[int, Callable[..., Any], tuple[Any, ...]]] = []
     work += [(0, trials.select_once, (scenario.key, run)) for scenario in SCENARIOS for run in range(sizes.selection)]
@@ -181,13 +181,13 @@ def _repeated(sizes: Sizes, hands: Path | None, sets: Path | None) -> tuple[tupl
             gathered[pool.submit(_chunk, chunk)] = number
         for done in as_completed(gathered):
             bar.advance(row, len(done.result()))
-    found: tuple[list[Any], ...] = tuple([] for _ in PARTS)
-    taken = [0.0] * len(PARTS)
+    found: tuple[list[Any], ...] = tuple([] for _ in EXPERIMENT_PARTS)
+    taken = [0.0] * len(EXPERIMENT_PARTS)
     for done, number in gathered.items():
         for (kind, _, arguments), (outcome, seconds) in zip(chunks[number], done.result(), strict=True):
             found[kind].append((arguments, outcome))
             taken[kind] += seconds
-    return found, {name: round(seconds) for name, seconds in zip(PARTS, taken, strict=True)}
+    return found, {name: round(seconds) for name, seconds in zip(EXPERIMENT_PARTS, taken, strict=True)}
 
 
 def _chunk(work: Sequence[tuple[int, Callable[..., Any], tuple[Any, ...]]]) -> list[tuple[Any, float]]:

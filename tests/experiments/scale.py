@@ -12,22 +12,22 @@ from teachpath.learning.selection.paper_mode import RIDGE, select_as_paper
 from teachpath.learning.selection.symbols import spectra, symbol_sequences
 from teachpath.records import Array
 from tests.experiments import quoted
-from tests.experiments.scenarios import THREE
+from tests.experiments.scenarios import THREE_WAYS
 from tests.experiments.trials import settings
 from tests.unit.learning import synthetic
 
 # How many frames 159 samples make when so many noughts are put before and behind them.
 FRAMES = {14: (0, 0), 15: (0, 1), 16: (10, 10), 17: (10, 11)}
-ONE = "one"  # a single Gaussian instead of the model, 14 frames
-PRINTED = mean(value for rows in quoted.TABLE_1.values() for _, value in rows)
+ONE_WAY = "one"  # a single Gaussian instead of the model, 14 frames
+PRINTED_MEAN = mean(value for rows in quoted.TABLE_1.values() for _, value in rows)
 
 
 def scale_once(seed: int) -> dict[str, float]:
     """Return the mean log-likelihood of the twelve demonstrations of one data set, for each number of frames."""
     positions = {name: each.positions for name, each in synthetic.experiment_1(seed).items()}
     names = list(positions)
-    ways = [[name for name, way in zip(names, THREE, strict=True) if way == wanted] for wanted in range(3)]
-    found = {ONE: _by_one_gaussian(positions, ways, seed)}
+    ways = [[name for name, way in zip(names, THREE_WAYS, strict=True) if way == wanted] for wanted in range(3)]
+    found = {ONE_WAY: _by_one_gaussian(positions, ways, seed)}
     for frames, ends in FRAMES.items():
         padded = {name: np.pad(each, (ends, (0, 0))) for name, each in positions.items()}
         clusters = select_as_paper(padded, ways, settings("paper", seed), on_step=lambda: None)
@@ -62,10 +62,11 @@ def paragraph(scale: Mapping[str, Any]) -> str:
     """Return what the report says of it."""
     readings = ", ".join(f"{scale[str(frames)]:.0f} for {frames} frames" for frames in FRAMES)
     return (
-        f"<p>The printed log-probabilities are {PRINTED:.0f} in the mean; mode paper gives {scale['14']:.0f} (mean "
-        f"over {scale['n']} data sets), {scale['14'] - PRINTED:.0f} more. Windows of 20 samples that overlap by half "
-        "fit 14 times into 159 samples. No training by likelihood explains the printed scores from 14 frames: "
-        f"one single Gaussian for all frames of a cluster reaches {scale[ONE]:.0f}, and the model holds twenty. "
+        f"<p>The printed log-probabilities are {PRINTED_MEAN:.0f} in the mean; mode paper gives {scale['14']:.0f} "
+        f"(mean over {scale['n']} data sets), {scale['14'] - PRINTED_MEAN:.0f} more. "
+        "Windows of 20 samples that overlap by half fit 14 times into 159 samples. "
+        "No training by likelihood explains the printed scores from 14 frames: "
+        f"one single Gaussian for all frames of a cluster reaches {scale[ONE_WAY]:.0f}, and the model holds twenty. "
         f"Noughts put before and behind the samples make more frames, and the scores fall: {readings}. So either the "
         "original padded its windows, or its training stopped early, or its codewords were spread wider than ours; "
         "the publication does not say. The literal reading stays; ranks, which decide the selection, do not depend "

@@ -119,7 +119,7 @@ class Ways:
     target: float
 
 
-THREE = (0, 1, 2, 2, 1, 0, 2, 0, 2, 0, 1, 0)  # Table I
+THREE_WAYS = (0, 1, 2, 2, 1, 0, 2, 0, 2, 0, 1, 0)  # Table I
 
 
 def at_any_speed(seed: int, ways: tuple[int, ...]) -> Demonstrations:
@@ -127,15 +127,15 @@ def at_any_speed(seed: int, ways: tuple[int, ...]) -> Demonstrations:
     rng = np.random.default_rng(seed)
     return {
         str(i): synthetic.demonstration(
-            rng, synthetic.WAYS[way], duration=3.16 * (1 + 0.45 * rng.uniform(-1, 1)), warp=0.25
+            rng, synthetic.WAY_POINTS[way], duration=3.16 * (1 + 0.45 * rng.uniform(-1, 1)), warp=0.25
         )
         for i, way in enumerate(ways, 1)
     }
 
 
 GROUPINGS = (
-    Ways("three_even", "three ways, alike in speed", synthetic.experiment_1, THREE, 0.97),
-    Ways("three_speeds", "three ways, ±45 % duration", partial(at_any_speed, ways=THREE), THREE, 0.97),
+    Ways("three_even", "three ways, alike in speed", synthetic.experiment_1, THREE_WAYS, 0.97),
+    Ways("three_speeds", "three ways, ±45 % duration", partial(at_any_speed, ways=THREE_WAYS), THREE_WAYS, 0.97),
     Ways("one_of_twelve", "one way, 12 times, ±45 %", partial(at_any_speed, ways=(1,) * 12), (1,) * 12, 0.93),
     Ways("one_of_five", "one way, 5 times", partial(synthetic.experiment_2, wiggle=0.0), (1,) * 5, 0.93),
 )

@@ -66,7 +66,7 @@ def detour_of_3_cm(positions: Array, at: int, rng: np.random.Generator) -> Array
     return np.asarray(positions + 0.03 * bump[:, None] * side / np.linalg.norm(side))
 
 
-FAULTLESS = (
+FAULTLESS_CASES = (
     SelectionCase("alike", "alike in pace", alike, 0.02),
     SelectionCase("pace", "±45 % duration, warped", at_strong_pace, 0.025),
     SelectionCase("twice", "one twice as fast", one_twice_as_fast, 0.025),
@@ -77,8 +77,8 @@ FAULTLESS = (
 )
 TARGETS = {"wiggle": 0.995, "wiggle_fifth": 0.98, "two_wiggly": 0.98, "pause": 0.98, "freeze": 0.98, "spike": 0.98}
 TARGETS |= {"jitter": 0.98, "detour": 0.98}
-FAULTY = (
+FAULTY_CASES = (
     *(SelectionCase(s.key, s.title, s.shown, TARGETS[s.key], s.marked) for s in SCENARIOS if s.key in TARGETS),
     SelectionCase("detour_half", "a smooth detour of 3 cm", partial(spoilt, detour_of_3_cm), 0.75, 1),
 )
-CASES = {case.key: case for case in (*FAULTLESS, *FAULTY)}
+CASES = {case.key: case for case in (*FAULTLESS_CASES, *FAULTY_CASES)}

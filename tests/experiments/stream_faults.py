@@ -20,7 +20,7 @@ from tests.faults.streams import Stream, any_hand, shown
 NO_FAULT = "none"
 VERDICTS = ("clean", "repaired", "reject", "none")
 MAX_FALSE_ALARM = 0.01  # share of faultless streams that may be not clean
-COUNTED = ("received", "lost", "refused", "duplicated", "conflicts", "untracked")
+COUNTER_FIELDS = ("received", "lost", "refused", "duplicated", "conflicts", "untracked")
 BY_KEY = {fault.key: fault for fault in FAULTS}
 CASES = [(fault.key, strength) for fault in FAULTS for strength in fault.strengths]
 BATCH = 20  # faultless streams that one station records
@@ -50,13 +50,13 @@ def faultless_batch(batch: int) -> dict[str, Any]:
 
 def counted(statistics: StreamStatistics) -> dict[str, int]:
     """Return what a recorder has counted."""
-    found = {name: getattr(statistics, name) for name in COUNTED}
+    found = {name: getattr(statistics, name) for name in COUNTER_FIELDS}
     return found | {"misplaced": statistics.reordered + statistics.late}
 
 
 def expected(stream: Stream) -> dict[str, int]:
     """Return what it has to count."""
-    return {name: stream.truth().get(name, 0) for name in (*COUNTED, "misplaced")}
+    return {name: stream.truth().get(name, 0) for name in (*COUNTER_FIELDS, "misplaced")}
 
 
 def summary(

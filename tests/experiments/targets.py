@@ -14,7 +14,7 @@ from tests.experiments.scenarios import GROUPINGS, SCENARIOS
 from tests.experiments.trials import MODES
 
 SHAPE_BOUND = 0.01  # m, Fréchet distance asked of mode default
-UNEVEN = 0.01  # probability below which the rates at the five places count as different
+UNEVEN_SHARE = 0.01  # probability below which the rates at the five places count as different
 
 
 def targets(found: Found) -> list[tuple[str, str, str, bool]]:
@@ -35,7 +35,12 @@ def targets(found: Found) -> list[tuple[str, str, str, bool]]:
             rows.append((f"left out of the path: {scenario.title}", f"≥ {scenario.target:.0%}", str(rate), kept))
     chance = uneven(by_place(found)["default"])
     rows.append(
-        ("control does not depend on the place in the list", f"p ≥ {UNEVEN}", f"p = {chance:.2f}", chance >= UNEVEN)
+        (
+            "control does not depend on the place in the list",
+            f"p ≥ {UNEVEN_SHARE}",
+            f"p = {chance:.2f}",
+            chance >= UNEVEN_SHARE,
+        )
     )
     for ways in GROUPINGS:
         rate = groups[ways.key]["default"]

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.faults.streams import OPEN, PERIOD_NS, RATE, Event, Stream, changed
+from tests.faults.streams import OPEN_FLEXION, PERIOD_NS, RATE, Event, Stream, changed
 
 Change = Callable[[Stream, np.random.Generator, float], Stream]
-FAST = 0.5  # of the greatest speed; faster parts of the transport are where a freeze can be told from a rest
+FAST_SHARE = 0.5  # of the greatest speed; faster parts of the transport are where a freeze can be told from a rest
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def freeze(stream: Stream, rng: np.random.Generator, seconds: float) -> Stream:
     length, carried = round(seconds * RATE), _carried(stream)
     places = np.array([stream.events[i].sample.position for i in carried])
     speed = np.convolve(np.linalg.norm(np.diff(places, axis=0), axis=1), np.ones(7) / 7, "same")
-    fast = [k for k in np.flatnonzero(speed > FAST * speed.max()) if k + length < len(carried)]
+    fast = [k for k in np.flatnonzero(speed > FAST_SHARE * speed.max()) if k + length < len(carried)]
     first = carried[int(rng.choice(fast))]
     pose = stream.events[first].sample.position
     return _mapped(
@@ -174,7 +174,7 @@ def flap(stream: Stream, rng: np.random.Generator, times: float) -> Stream:
     at = int(rng.choice(carried[: len(carried) - length]))
     opened = {i for k in range(int(times)) for i in (at + 4 * k, at + 4 * k + 1)}
     return _mapped(
-        stream, lambda i, e: replace(e, sample=e.sample._replace(flexions=(OPEN,) * 22)) if i in opened else e
+        stream, lambda i, e: replace(e, sample=e.sample._replace(flexions=(OPEN_FLEXION,) * 22)) if i in opened else e
     )
 
 
@@ -184,7 +184,9 @@ def let_go(stream: Stream, rng: np.random.Generator, seconds: float) -> Stream:
     at = int(rng.choice(carried[: len(carried) - length]))
     return _mapped(
         stream,
-        lambda i, e: replace(e, sample=e.sample._replace(flexions=(OPEN,) * 22)) if at <= i < at + length else e,
+        lambda i, e: (
+            replace(e, sample=e.sample._replace(flexions=(OPEN_FLEXION,) * 22)) if at <= i < at + length else e
+        ),
     )
 
 

@@ -15,7 +15,7 @@ START_NS = 1_700_000_000_000_000_000
 TRANSIT_NS = 1_000_000
 OBJECT = (0.5, 0.0, 0.5)  # [m]
 NOISE = 3e-4  # [m] of the tracker
-OPEN, CLOSED = 0.1, 0.9
+OPEN_FLEXION, CLOSED_FLEXION = 0.1, 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +89,10 @@ def any_hand(rng: np.random.Generator) -> Hand:
     return Hand(10 ** rng.uniform(-4.0, -3.0), (50, 250))
 
 
-USUAL = Hand()
+USUAL_HAND = Hand()
 
 
-def shown(rng: np.random.Generator, hand: Hand = USUAL) -> Stream:
+def shown(rng: np.random.Generator, hand: Hand = USUAL_HAND) -> Stream:
     """Show a task without a fault: reach, take, carry along a bow, put, return and rest."""
     x, y, z = OBJECT
     away = rng.uniform(0.25, 0.35)
@@ -112,7 +112,7 @@ def shown(rng: np.random.Generator, hand: Hand = USUAL) -> Stream:
     places = places + rng.normal(0.0, hand.noise, places.shape)
     events = []
     for k, place in enumerate(places.tolist()):
-        closure = (CLOSED if grasp <= k < release else OPEN) + rng.uniform(-0.05, 0.05)
+        closure = (CLOSED_FLEXION if grasp <= k < release else OPEN_FLEXION) + rng.uniform(-0.05, 0.05)
         stamp = START_NS + (k + 1) * PERIOD_NS
         transit = TRANSIT_NS + int(rng.exponential(2e6))
         events.append(Event(Sample("glove", k + 1, stamp, stamp + transit, tuple(place), None, (closure,) * 22, True)))

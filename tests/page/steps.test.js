@@ -7,7 +7,7 @@ import { INITIAL_STATE } from "../../clients/web/store.js";
 const PATH = { id: "p", cluster: 1, version: 2 };
 const PLAN = { id: "plan", path: "p", path_version: 2 };
 const RUN = { id: "run", learned: { paths: [PATH], clusters: [] } };
-const DONE = { plan: "plan", status: { state: "ended", progress: 1 } };
+const FINISHED_PLAN = { plan: "plan", status: { state: "ended", progress: 1 } };
 
 /** @param {object} changes */
 const steps = (changes) => [...doneSteps({ ...INITIAL_STATE, ...changes })];
@@ -20,7 +20,7 @@ test("nothing is done before anything is known, and each step when its work is t
   assert.deepEqual(steps(learned), ["demonstrate", "ways"]);
   const planned = { ...learned, plan: PLAN };
   assert.deepEqual(steps(planned), ["demonstrate", "ways", "edit"]);
-  assert.deepEqual(steps({ ...planned, executions: [DONE] }), ["demonstrate", "ways", "edit", "run"]);
+  assert.deepEqual(steps({ ...planned, executions: [FINISHED_PLAN] }), ["demonstrate", "ways", "edit", "run"]);
 });
 
 test("what cannot be learned from, is not certified in its newest version or was broken off is not done", () => {

@@ -22,8 +22,8 @@ D = (26.45 * 0.0254, 0.0, 0.15005, 0.4318, 0.0, 0.05625)
 TWIST = (90.0, 0.0, -90.0, 90.0, -90.0, 0.0)
 GRIP = 0.13
 ELBOW = 0.295  # from the plane in which joint 2 turns to the outer face of the upper arm
-LOW = np.radians([-160, -45, -225, -110, -100, -266])
-HIGH = np.radians([160, 225, 45, 170, 100, 266])
+LOWER_LIMITS = np.radians([-160, -45, -225, -110, -100, -266])
+UPPER_LIMITS = np.radians([160, 225, 45, 170, 100, 266])
 SPEED = np.array([1.92, 1.51, 2.40, 5.34, 5.09, 5.74])
 ACCELERATION = np.array([10.0, 8.0, 16.0, 40.0, 40.0, 40.0])
 JERK = 10.0 * ACCELERATION
@@ -54,7 +54,7 @@ def frames(q: np.ndarray) -> list[np.ndarray]:
 def judge(setpoints: np.ndarray, curve: Curve, scene: Scene, *, every: int = 12) -> Verdict:
     """Judge the setpoints (n, 6) that follow a curve; clearance is sampled at every so many of them."""
     use = [np.abs(np.diff(setpoints, k, axis=0)).max(axis=0) * RATE**k for k in (1, 2, 3)]
-    middle, half = (LOW + HIGH) / 2, (HIGH - LOW) / 2
+    middle, half = (LOWER_LIMITS + UPPER_LIMITS) / 2, (UPPER_LIMITS - LOWER_LIMITS) / 2
     tools = np.array([(frames(q)[6] @ _shift(0, 0, GRIP))[:3, 3] for q in setpoints])
     bodies = Solids(scene, setpoints[0])
     least = min(bodies.outside(q) for q in setpoints[::every])

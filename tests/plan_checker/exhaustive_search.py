@@ -12,12 +12,12 @@ import numpy as np
 from teachpath.exchange import to_geomdl
 from teachpath.nurbs import Curve
 from teachpath.records import Scene
-from tests.plan_checker.checker import GRIP, HIGH, LOW, A, D, Solids, frames
+from tests.plan_checker.checker import GRIP, LOWER_LIMITS, UPPER_LIMITS, A, D, Solids, frames
 
 PLACES = 41  # along the curve
 ROLLS = np.radians(np.arange(0, 360, 15))
-CLEAR = 0.005  # m, from obstacles
-SINGULAR = 0.03
+MIN_CLEARANCE = 0.005  # m, from obstacles
+MIN_SINGULAR_VALUE = 0.03
 STEP = 0.6  # rad, that a joint may turn from a place to the next
 
 
@@ -53,7 +53,9 @@ def _held(point: np.ndarray, roll: float, bodies: Solids, before: np.ndarray | N
             continue
         same = tuple(np.round(np.mod(q, 2 * np.pi), 6))  # whole turns of a joint change nothing in the world
         if same not in free:
-            free[same] = _least_singular(q) >= SINGULAR and bodies.outside(q, enough=CLEAR) >= CLEAR
+            free[same] = (
+                _least_singular(q) >= MIN_SINGULAR_VALUE and bodies.outside(q, enough=MIN_CLEARANCE) >= MIN_CLEARANCE
+            )
         if free[same]:
             found.append(q)
     return found
@@ -105,7 +107,7 @@ def _arms(wrist: np.ndarray) -> list[tuple[float, float, float]]:
 def _turned(base: np.ndarray) -> list[np.ndarray]:
     """Return a configuration with every joint turned by whole turns in all ways that its limits allow."""
     ways = []
-    for angle, low, high in zip(base, LOW, HIGH, strict=True):
+    for angle, low, high in zip(base, LOWER_LIMITS, UPPER_LIMITS, strict=True):
         ways.append([turned for turned in angle + 2 * np.pi * np.array([-1, 0, 1]) if low <= turned <= high])
     return [np.array(q) for q in product(*ways)]
 

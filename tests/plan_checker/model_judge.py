@@ -14,7 +14,7 @@ from teachpath.records import Plan, Scene, Shape
 
 RATE = 250.0  # [Hz]
 POINTS = 100_001  # of the curve
-EVERY = 10  # setpoints from one whose clearance is measured to the next
+NODE_STRIDE = 10  # setpoints from one whose clearance is measured to the next
 ROUNDING = 1e-6  # [m]
 KINDS = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
@@ -45,7 +45,7 @@ class ModelJudge:
             place, turn = self._tool(model, data)
             if points.query(place)[0] > settings.path_tolerance or turn[2, 2] > -1.0 + 1e-6:
                 return False
-            if number % EVERY == 0 and self._clearance(model, data) < settings.clearance_min - ROUNDING:
+            if number % NODE_STRIDE == 0 and self._clearance(model, data) < settings.clearance_min - ROUNDING:
                 return False
         return True
 

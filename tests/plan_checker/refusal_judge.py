@@ -19,7 +19,7 @@ from tests.plan_checker.model_judge import ModelJudge
 PLACES = 16  # along the path
 SEEDS = 150  # at each of them
 ITERATIONS = 60
-CLOSED = 1e-6  # [m and rad] between the tool and its pose
+POSE_TOLERANCE = 1e-6  # [m and rad] between the tool and its pose
 DAMPING = 1e-4
 LARGEST_STEP = 0.3  # [rad] of an iteration
 # Palm and closed fingers: centre, and half of the edges, in the frame that the gripper sits on [m].
@@ -96,13 +96,13 @@ class RefusalJudge(ModelJudge):
         for q in self._random.uniform(lower, upper, (SEEDS, model.nq)):
             for _ in range(ITERATIONS):
                 error, jacobian = self._error(model, data, q, place, down)
-                if np.abs(error).max() < CLOSED:
+                if np.abs(error).max() < POSE_TOLERANCE:
                     break
                 step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + DAMPING * np.eye(6), error)
                 q = q + step * min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-12))
             turned = q + 2 * np.pi * np.round(((lower + upper) / 2 - q) / (2 * np.pi))
             error, jacobian = self._error(model, data, turned, place, down)
-            inside = np.all((turned >= lower) & (turned <= upper)) and np.abs(error).max() < 10 * CLOSED
+            inside = np.all((turned >= lower) & (turned <= upper)) and np.abs(error).max() < 10 * POSE_TOLERANCE
             regular = np.linalg.svd(jacobian, compute_uv=False)[-1] >= settings.least_singular
             if inside and regular and self._clearance(model, data) >= settings.clearance_min:
                 kept.append(turned)

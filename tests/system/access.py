@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 AXE = (Path(__file__).parent / "assets" / "axe" / "axe.min.js").read_text()
-SILENT = """[...document.querySelectorAll(":disabled")].filter((one) => one.checkVisibility() && !one.title)
+UNNAMED_SCRIPT = """[...document.querySelectorAll(":disabled")].filter((one) => one.checkVisibility() && !one.title)
   .map((one) => one.outerHTML)"""
 
 Finding = tuple[str, str, str]  # where, rule, first element
@@ -16,5 +16,5 @@ def barriers(page: Any, where: str) -> list[Finding]:
     page.evaluate(f"{AXE};0")
     result = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
     assert len(result["passes"]) > 10  # it has looked
-    silent = [(where, "off without a reason", html) for html in page.evaluate(SILENT)]
+    silent = [(where, "off without a reason", html) for html in page.evaluate(UNNAMED_SCRIPT)]
     return [(where, v["id"], v["nodes"][0]["html"]) for v in result["violations"]] + silent

@@ -10,7 +10,7 @@ from tests.system.processes import Service
 from tests.system.test_view import Visit
 
 START, GOAL = (0.58, -0.28, 0.52), (0.58, 0.28, 0.52)  # of the box in the paper's scene
-OVER = 0.62  # [m] height at which it is carried between the obstacles
+CARRY_HEIGHT = 0.62  # [m] height at which it is carried between the obstacles
 
 
 def phase(visit: Visit, name: str) -> None:
@@ -23,7 +23,7 @@ def until_box(visit: Visit, condition: str) -> None:
     visit.page.wait_for_function(f"() => {{ {box}; return {condition}; }}", polling=20)
 
 
-ARRIVED = "Math.hypot(...at.map((value, i) => value - target[i])) < 0.005"
+ARRIVED_SCRIPT = "Math.hypot(...at.map((value, i) => value - target[i])) < 0.005"
 
 
 def choose_new(visit: Visit, service: Service, task: str) -> None:
@@ -50,21 +50,23 @@ def carry(visit: Visit, *, way: float = 0.0) -> None:
     mouse.down()
     phase(visit, "carrying")
     mouse.wheel(0, -250)
-    until_box(visit, f"at[2] > {OVER - 0.005}")  # the corners of the path are where they are, however slow the page is
+    until_box(
+        visit, f"at[2] > {CARRY_HEIGHT - 0.005}"
+    )  # the corners of the path are where they are, however slow the page is
     off = offset(visit, at)
     for k in range(1, 7):
         y = START[1] + (GOAL[1] - START[1]) * k / 6
-        mouse.move(*seen(visit, (START[0] + way * math.sin(math.pi * k / 6), y, OVER), off))
+        mouse.move(*seen(visit, (START[0] + way * math.sin(math.pi * k / 6), y, CARRY_HEIGHT), off))
         until_box(visit, f"Math.abs(at[1] - {y}) < 0.015")
     until_box(visit, f"Math.abs(at[1] - {GOAL[1]}) < 0.01")
     mouse.wheel(0, 250)
-    until_box(visit, f"at[2] < {GOAL[2] + 0.01} && {ARRIVED}")
+    until_box(visit, f"at[2] < {GOAL[2] + 0.01} && {ARRIVED_SCRIPT}")
     mouse.up()
 
 
 def offset(visit: Visit, at: tuple[float, float]) -> list[float]:
     """How far the box is from what is under the pointer, at the height where it is carried."""
-    plane = f"{{through: [0, 0, {OVER}], normal: [0, 0, 1]}}"
+    plane = f"{{through: [0, 0, {CARRY_HEIGHT}], normal: [0, 0, 1]}}"
     hit = visit.page.evaluate(f"teachpath.unproject({at[0]}, {at[1]}, {plane})")
     return [START[0] - hit[0], START[1] - hit[1], 0.0]
 
@@ -121,7 +123,7 @@ def carry_worn(visit: Visit, move: Any, *, rise: float = 0.24) -> None:
     """Close the hand at the box, carry it over the obstacles, `rise` [m] higher half way, open it and rest."""
     move(visit, START, 0)
     visit.page.wait_for_timeout(400)  # at least: a hand that was elsewhere leaps to the box
-    visit.page.evaluate(NEXT)
+    visit.page.evaluate(NEXT_SCRIPT)
     move(visit, START, 1)
     phase(visit, "carrying")
     over = [
@@ -134,7 +136,7 @@ def carry_worn(visit: Visit, move: Any, *, rise: float = 0.24) -> None:
 
 
 # Resolves when the headset's hand has been sampled again: where drawing is slow the carrying is slow, and no leap.
-NEXT = """async () => {
+NEXT_SCRIPT = """async () => {
   const hand = teachpath.headset();
   for (const before = hand.samples; hand.samples === before; ) await new Promise((done) => setTimeout(done, 5));
 }"""
@@ -155,7 +157,7 @@ FOLLOW = """async (places) => {
 }"""
 
 # Keeps the time of every sample [ms] of the headset that is put on next, from its first one.
-HEAR = """async () => {
+HEAR_SCRIPT = """async () => {
   const { XrHand } = await import("/web/hand/xr_hand.js");
   globalThis.heard = [];
   Object.defineProperty(XrHand.prototype, "onSample", {

@@ -5,7 +5,7 @@ import pytest
 
 from tests.ports import free_ports
 from tests.system.demos import Start
-from tests.system.processes import BUSY, Command, Service
+from tests.system.processes import BUSY_SETTINGS, Command, Service
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
 
     def demo(*arguments: str, port: int | None = None) -> Command:
         web, bus = free_ports(2)
-        environment = {**BUSY, "TEACHPATH_BUS__ENDPOINT": f"tcp/127.0.0.1:{bus}"}
+        environment = {**BUSY_SETTINGS, "TEACHPATH_BUS__ENDPOINT": f"tcp/127.0.0.1:{bus}"}
         words = ("demo", "--port", str(port or web), *arguments)
         started.append(Command(*words, folder=tmp_path, environment=environment))
         return started[-1]

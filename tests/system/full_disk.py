@@ -26,7 +26,7 @@ from tests.unit.recording.hands import demonstration
 from tests.waiting import wait_until
 
 KEYS = Keys("disk")
-SHOWN = 110
+SAMPLE_COUNT = 110
 SIZE = "256k"
 
 
@@ -64,7 +64,7 @@ class Trial:
     def show(self) -> dict[str, Any]:
         """Show one more take; say what the station said in the middle of it, and what became of it."""
         x, y, z = paper_scene().carried.position  # type: ignore[union-attr]
-        samples = demonstration(1 + self.takes * SHOWN, at=(x, y, z))
+        samples = demonstration(1 + self.takes * SAMPLE_COUNT, at=(x, y, z))
         self.takes += 1
         self.send(samples[:60])
         faults = self.recorder.faults()
@@ -90,7 +90,7 @@ class Trial:
         return {f.name: hashlib.sha256(f.read_bytes()).hexdigest() for f in self.disk.rglob("*.mcap")}
 
     def end(self) -> dict[str, Any]:
-        statistics: Any = self.recorder.end(StopRequest("glove", self.takes * SHOWN)).statistics
+        statistics: Any = self.recorder.end(StopRequest("glove", self.takes * SAMPLE_COUNT)).statistics
         rows = self.store.demonstrations("lift")
         readable = [len(self.store.recordings.samples(row.recording)) == row.samples for row in rows]
         self.recorder.stop()

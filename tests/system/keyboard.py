@@ -7,7 +7,7 @@ from tests.system.test_view import Visit
 
 MAX_TABS = 90  # from anywhere to anything: more is a trap
 # What has the focus, in the words of a screen reader or of whoever looks at it; the page as a whole has none.
-FOCUSED = """() => {
+FOCUSED_SCRIPT = """() => {
   const one = document.activeElement;
   if (!one || one === document.body) return "";
   const text = one.matches("button, a, summary") ? one.textContent : "";
@@ -25,7 +25,7 @@ class Keyboard:
     @property
     def focused(self) -> str:
         """What has the focus; empty when nothing has."""
-        words: str = self.page.evaluate(FOCUSED)
+        words: str = self.page.evaluate(FOCUSED_SCRIPT)
         return words
 
     def press(self, key: str) -> None:

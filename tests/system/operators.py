@@ -13,15 +13,17 @@ from teachpath_client import HandReading, Link, Station, Tracker
 from teachpath_client.models import Execution
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
-from tests.system.carriers import NEXT, START, move_hand
+from tests.system.carriers import NEXT_SCRIPT, START, move_hand
 from tests.system.test_view import Visit
 from tests.waiting import wait_until
 
-RESTING = frozenset(state for state in ExecutorState if state.is_resting)
+RESTING_STATES = frozenset(state for state in ExecutorState if state.is_resting)
 # Why the executor holds the arm by itself when the arm's own process gets no turn: an operator then says it again.
-STARVED = ("no joint state", "the arm has taken up no setpoint", "setpoints were late")
-AGAIN = "let the clutch go"  # what the executor asks for when the clutch is held though the arm does not follow
-SETTLED = 50  # control periods after the answer to an order in which the executor tells what came of it
+STARVED_REASONS = ("no joint state", "the arm has taken up no setpoint", "setpoints were late")
+RELEASE_CLUTCH_REASON = (
+    "let the clutch go"  # what the executor asks for when the clutch is held though the arm does not follow
+)
+SETTLED_SAMPLES = 50  # control periods after the answer to an order in which the executor tells what came of it
 
 Status = dict[str, Any]
 Done = Callable[[], bool]
@@ -97,7 +99,7 @@ class Operator:
             seen.append(self.status())
             if true(seen[-1]):
                 return True
-            if seen[-1]["state"] == "held" and seen[-1]["reason"].startswith(STARVED):
+            if seen[-1]["state"] == "held" and seen[-1]["reason"].startswith(STARVED_REASONS):
                 self.try_to(again)
             return False
 
@@ -125,9 +127,9 @@ class Operator:
 
         def rests() -> bool:
             now = self.executions()[0].status
-            if now.state == "held" and now.cycles > ordered + SETTLED:
+            if now.state == "held" and now.cycles > ordered + SETTLED_SAMPLES:
                 seen.append((now.length, now.cycles))
-            return any(length == now.length and cycles < now.cycles - SETTLED for length, cycles in seen)
+            return any(length == now.length and cycles < now.cycles - SETTLED_SAMPLES for length, cycles in seen)
 
         wait_until(rests, "the arm rests after a step")
         length = seen[-1][0]
@@ -174,7 +176,11 @@ class Leader(Operator):
 
     def wait_ready(self) -> None:
         """Wait until the arm waits for the clutch alone; why it was let go is still said then."""
-        self.until(lambda status: status["state"] == "held" and not status["reason"].startswith((*STARVED, AGAIN)))
+        self.until(
+            lambda status: (
+                status["state"] == "held" and not status["reason"].startswith((*STARVED_REASONS, RELEASE_CLUTCH_REASON))
+            )
+        )
 
     def tool(self) -> np.ndarray:
         """Where the grasp point is drawn [m]."""
@@ -191,7 +197,7 @@ class Leader(Operator):
     @property
     def _is_led(self) -> bool:
         """Whether the clutch is pressed and has not to be let go; an arm that was late goes on by itself."""
-        return self._pressed and not self.status()["reason"].startswith((*STARVED, AGAIN))
+        return self._pressed and not self.status()["reason"].startswith((*STARVED_REASONS, RELEASE_CLUTCH_REASON))
 
     def lead(self, press: Callable[[], None], move: Callable[[], None], let_go: Callable[[], None], done: Done) -> None:
         """Hold the clutch, move, and wait for what is expected; then let go, and wait until the arm is held."""
@@ -222,7 +228,7 @@ class Leader(Operator):
 
         def press() -> None:
             move_hand(self._visit, START, 0)
-            self.page.evaluate(NEXT)
+            self.page.evaluate(NEXT_SCRIPT)
             begin[:] = self.tool()
             clutch(1)
 

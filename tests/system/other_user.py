@@ -19,9 +19,9 @@ from teachpath_proto.motion_pb2 import ExecutorCommand, LeaseRequest, Setpoint
 from teachpath_proto.sessions import joining, open_session
 from teachpath_proto.tracker_pb2 import HandSample
 
-NOBODY = 65534
+NOBODY_UID = 65534
 KEYS = Keys()
-ELSEWHERE = [0.5, 1.0, -2.0, 0.0, -1.0, 0.5]  # [rad]
+OTHER_CONFIGURATION = [0.5, 1.0, -2.0, 0.0, -1.0, 0.5]  # [rad]
 
 
 def readable(files: list[str]) -> list[str]:
@@ -58,7 +58,7 @@ def attack(session: Any) -> dict[str, list[str]]:
         session.declare_queryable(key, lambda query, name=name: came[name].append(str(query.key_expr)), complete=True)
     session.declare_subscriber(KEYS.executor_lease, lambda sample: came["tapped"].append(str(sample.key_expr)))
     for cycle in range(100):
-        setpoint = Setpoint(cycle=cycle, nominal_ns=time.time_ns(), position=ELSEWHERE, execution="attack")
+        setpoint = Setpoint(cycle=cycle, nominal_ns=time.time_ns(), position=OTHER_CONFIGURATION, execution="attack")
         session.put(KEYS.setpoint("puma560"), setpoint.SerializeToString())
         session.put(KEYS.samples("hand"), HandSample(sequence=cycle, device_ns=time.time_ns()).SerializeToString())
     return came
@@ -68,8 +68,8 @@ def main() -> None:
     """Attack as another user."""
     given = json.loads(sys.stdin.readline())
     os.setgroups([])
-    os.setgid(NOBODY)
-    os.setuid(NOBODY)
+    os.setgid(NOBODY_UID)
+    os.setuid(NOBODY_UID)
     os.environ.clear()
     login = Login(**{**given["login"], "role": Role(given["login"]["role"])})
     guessed = Login("operator", "guessed", Role.OPERATOR)

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from tests.conftest import ABSENT, NAMES, chromium
+from tests.conftest import NAMES, NO_CHROMIUM, chromium
 from tests.system.processes import Service
 from tests.system.test_station import record
 from tests.system.test_view import Visit
 
 DOCS = Path(__file__).parents[2] / "docs"
 SIZE = (1200, 750)  # of the page
-SMALL = (800, 500)  # of the moving picture
+SMALL_SIZE = (800, 500)  # of the moving picture
 INSTANTS = 30  # of the motion that it shows
-READ = 1800  # [ms] for a picture that stands
+READING_TIME = 1800  # [ms] for a picture that stands
 FRAME = 120  # [ms] for one that moves
 
 
@@ -27,7 +27,7 @@ def main() -> None:
     """Teach a station the paper's first experiment, and picture the page's tabs and the motion."""
     program = next((path for name in NAMES if (path := shutil.which(name))), None)
     if program is None:
-        sys.exit(ABSENT)
+        sys.exit(NO_CHROMIUM)
     with (
         tempfile.TemporaryDirectory() as folder,
         Service(Path(folder) / "data") as service,
@@ -42,7 +42,7 @@ def main() -> None:
         stills[1].quantize(256).save(DOCS / "view.png", optimize=True)
         motion = moved(visit)
         motion[INSTANTS // 2].quantize(256).save(DOCS / "run.png", optimize=True)
-        save_moving([*stills, *motion], [READ] * len(stills) + [FRAME] * INSTANTS)
+        save_moving([*stills, *motion], [READING_TIME] * len(stills) + [FRAME] * INSTANTS)
         visit.page.emulate_media(color_scheme="dark")
         visit.page.locator("#view").focus()
         pictured(visit, "edit").quantize(256).save(DOCS / "edit.png", optimize=True)
@@ -75,7 +75,7 @@ def moved(visit: Visit) -> list[Image.Image]:
 
 def save_moving(frames: list[Image.Image], durations: list[int]) -> None:
     """Write an animated WebP, which browsers show without an end."""
-    first, *others = [frame.resize(SMALL, Image.Resampling.LANCZOS) for frame in frames]
+    first, *others = [frame.resize(SMALL_SIZE, Image.Resampling.LANCZOS) for frame in frames]
     file = DOCS / "teachpath.webp"
     first.save(file, save_all=True, append_images=others, duration=durations, loop=0, quality=60, method=6)
 

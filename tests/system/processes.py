@@ -22,7 +22,7 @@ from tests.waiting import HANG, wait_until
 T = TypeVar("T")
 
 # What is judged elsewhere: a tracker, an arm or a hand that gets no turn on a busy machine is silent or irregular.
-BUSY = {
+BUSY_SETTINGS = {
     "TEACHPATH_RECORDING__LONGEST_GAP": "60",
     "TEACHPATH_RECORDING__LONGEST_SILENCE": "60",
     "TEACHPATH_RECORDING__TRACKER_RETURN_TIMEOUT": "300",
@@ -166,7 +166,7 @@ class Service(Command):
         self.data = data
         web, bus = self.ports = ports or free_ports(2)
         self.url, self.endpoint = f"http://127.0.0.1:{web}", f"tcp/127.0.0.1:{bus}"
-        environment = {"TEACHPATH_BUS__ENDPOINT": self.endpoint, **BUSY, **settings}
+        environment = {"TEACHPATH_BUS__ENDPOINT": self.endpoint, **BUSY_SETTINGS, **settings}
         super().__init__("serve", "--data", str(data), "--port", str(web), folder=data.parent, environment=environment)
         self.station = Station(self.url, timeout=HANG)
 

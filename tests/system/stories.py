@@ -4,12 +4,12 @@ import itertools
 from abc import ABC, abstractmethod
 from typing import Any
 
-from tests.system.carriers import ARRIVED, START, carry, phase, until_box
-from tests.system.operators import RESTING, Operator
+from tests.system.carriers import ARRIVED_SCRIPT, START, carry, phase, until_box
+from tests.system.operators import RESTING_STATES, Operator
 from tests.system.test_view import Visit
 
-LOOKS = 60  # for the click of a tap, before it is tapped again
-HEAR = "one => { one.heard = false; one.addEventListener('click', () => (one.heard = true), {once: true}); }"
+LOOK_COUNT = 60  # for the click of a tap, before it is tapped again
+HEAR_SCRIPT = "one => { one.heard = false; one.addEventListener('click', () => (one.heard = true), {once: true}); }"
 
 
 class Hand(ABC):
@@ -60,7 +60,7 @@ class Hand(ABC):
             sent.clear()
             self._down(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
             looks = itertools.count()
-            self.visit.wait(lambda: bool(sent) or (is_missed() and next(looks) > LOOKS))
+            self.visit.wait(lambda: bool(sent) or (is_missed() and next(looks) > LOOK_COUNT))
             self._up()
             return bool(sent) and bool(sent[0].response().ok)
 
@@ -116,7 +116,7 @@ class Fingers(Hand):
         self._browser.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": at})
 
     def _press(self, button: Any) -> None:
-        button.evaluate(HEAR)
+        button.evaluate(HEAR_SCRIPT)
         here = button.element_handle()
 
         def tapped() -> bool:
@@ -124,7 +124,7 @@ class Fingers(Hand):
             self._down(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
             self._up()
             looks = itertools.count()
-            self.visit.wait(lambda: here.evaluate("one => one.heard") or next(looks) > LOOKS)
+            self.visit.wait(lambda: here.evaluate("one => one.heard") or next(looks) > LOOK_COUNT)
             return bool(here.evaluate("one => one.heard"))  # else it came so slowly that it was a long press
 
         self.visit.wait(tapped, "the tap is a click")
@@ -139,10 +139,10 @@ class Fingers(Hand):
         self._touch("touchStart", (x, y), second)
         for k in range(1, 5):
             self._touch("touchMove", (x, y), (second[0], second[1] - 30 * k))
-        until_box(self.visit, f"at[2] > {START[2] + 0.1} && {ARRIVED}")
+        until_box(self.visit, f"at[2] > {START[2] + 0.1} && {ARRIVED_SCRIPT}")
         for k in range(1, 6):
             self._touch("touchMove", (x + 12 * k, y - 4 * k))  # the second finger is lifted
-        until_box(self.visit, f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.06 && {ARRIVED}")
+        until_box(self.visit, f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.06 && {ARRIVED_SCRIPT}")
         self._touch("touchEnd")
 
     def _down(self, x: float, y: float) -> None:
@@ -170,5 +170,5 @@ def tell(hand: Hand, operator: Operator) -> int:
     hand.start()
     acts = hand.actions
     hand.press("#stop")
-    visit.wait(lambda: operator.executions()[0].status.state in RESTING)
+    visit.wait(lambda: operator.executions()[0].status.state in RESTING_STATES)
     return acts

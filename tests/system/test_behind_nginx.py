@@ -29,10 +29,10 @@ pytestmark = pytest.mark.system
 DEPLOY = Path(__file__).parents[2] / "deploy"
 # Who has signed in at the emulated oauth2-proxy, by cookie, and the groups that it tells.
 GROUPS = {"anna": "teachers,cell-3-operators", "otto": "students"}
-PASSED = {"Cookie": "login=anna"}
-ABSENT = "no nginx; get it with: sudo apt-get install nginx-light"
+LOGIN_HEADERS = {"Cookie": "login=anna"}
+NO_NGINX = "no nginx; get it with: sudo apt-get install nginx-light"
 # What a distribution's own configuration has around a file of conf.d/, with all that nginx writes in its folder.
-AROUND = """daemon off;
+NGINX_CONFIG = """daemon off;
 pid nginx.pid;
 error_log stderr;
 events {{}}
@@ -78,7 +78,7 @@ def addresses(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Ite
     """Where nginx answers for the service, by the name of the sample."""
     program = shutil.which("nginx", path="/usr/sbin:/usr/bin:/usr/local/bin")
     if program is None:
-        pytest.skip(ABSENT)
+        pytest.skip(NO_NGINX)
     folder, (first, second) = tmp_path_factory.mktemp("nginx"), free_ports(2)
     certify(folder)
     with ThreadingHTTPServer(("127.0.0.1", 0), OAuth2Proxy) as asking:
@@ -95,7 +95,7 @@ def addresses(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Ite
             filled("nginx-oauth2.conf", here | asked | {"listen 443": f"listen 127.0.0.1:{second}"}),
         ]
         configuration = folder / "nginx.conf"
-        configuration.write_text(AROUND.format(samples="\n".join(samples)))
+        configuration.write_text(NGINX_CONFIG.format(samples="\n".join(samples)))
         command = [program, "-e", "stderr", "-p", str(folder), "-c", str(configuration)]
         checked = subprocess.run([*command, "-t"], capture_output=True, text=True, timeout=HANG)
         assert checked.returncode == 0, checked.stderr
@@ -177,15 +177,15 @@ def test_oauth2_proxy_is_asked_before_everything_but_a_stop(addresses: dict[str,
         page = client.get("")
         assert (page.status_code, page.headers["location"]) == (302, "/oauth2/start?rd=%2F")
         assert client.get("api/v1/tasks").status_code == 401
-        assert client.get("oauth2/auth", headers=PASSED).status_code == 404  # for nginx alone
+        assert client.get("oauth2/auth", headers=LOGIN_HEADERS).status_code == 404  # for nginx alone
         forged = {"X-Forwarded-User": "mallory"}
-        assert client.get("api/v1/identity", headers=PASSED | forged).json()["name"] == "anna"
-        assert client.put("api/v1/tasks/asked", json={}, headers=PASSED).status_code == 200
+        assert client.get("api/v1/identity", headers=LOGIN_HEADERS | forged).json()["name"] == "anna"
+        assert client.put("api/v1/tasks/asked", json={}, headers=LOGIN_HEADERS).status_code == 200
         stop = client.post("api/v1/stop", headers=forged)
         assert stop.status_code not in (302, 401, 403, 404), stop.text
     events = address.replace("https", "wss") + "api/v1/events"
     trusting = ssl._create_unverified_context()
-    with connect(events, ssl=trusting, additional_headers=PASSED) as socket:
+    with connect(events, ssl=trusting, additional_headers=LOGIN_HEADERS) as socket:
         assert socket.recv(HANG)
     with pytest.raises(InvalidStatus) as found, connect(events, ssl=trusting):
         pass
@@ -197,7 +197,7 @@ def test_roles_follow_from_the_groups_that_oauth2_proxy_tells(addresses: dict[st
     forged = dict.fromkeys(names, "cell-3-operators")
     otto = {"Cookie": "login=otto"} | forged
     with httpx.Client(base_url=addresses["login"], verify=False, trust_env=False, timeout=HANG) as client:
-        anna = client.get("api/v1/identity", headers=PASSED | forged).json()
+        anna = client.get("api/v1/identity", headers=LOGIN_HEADERS | forged).json()
         assert (anna["name"], anna["groups"]) == ("anna", ["teachers", "cell-3-operators"])
         assert anna["capabilities"] == ["view", "demonstrate", "operate"]
         assert client.get("api/v1/identity", headers=otto).json()["capabilities"] == []

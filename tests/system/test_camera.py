@@ -16,7 +16,7 @@ from tests.system.test_view import Server, Visit, way
 pytestmark = pytest.mark.system
 
 BASE = ((0.0, 0.0, 0.5), (1.0, 0.0, 0.0, 0.0))
-STRETCHED = np.zeros(6)  # [rad] upright, as high as the arm reaches
+STRETCHED_ARM = np.zeros(6)  # [rad] upright, as high as the arm reaches
 
 
 @pytest.fixture
@@ -62,9 +62,9 @@ def test_the_view_is_turned_by_the_keyboard_and_shows_a_high_arm_wholly(browser:
 
     arm = Arm.of_model(read_arm("six-axis", base=BASE, gripper_length=0.13), MotionSettings())
     server.stop()
-    server.start(demonstrations=3, arm=arm, home=STRETCHED)
+    server.start(demonstrations=3, arm=arm, home=STRETCHED_ARM)
     visit.wait(lambda: len([p for p in visit.paths() if p.startswith("/robot/link")]) == len(visual_solids(arm)))
     visit.wait(lambda: visit.page.evaluate("teachpath.stand()") == pytest.approx(BASE[0][2]))
     keys.press("0")
-    assert is_inside(shares(visit, link_frames(STRETCHED, arm)[:, :3, 3]))
+    assert is_inside(shares(visit, link_frames(STRETCHED_ARM, arm)[:, :3, 3]))
     visit.page.close()

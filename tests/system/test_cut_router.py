@@ -22,9 +22,9 @@ from tests.waiting import wait_until
 pytestmark = pytest.mark.system
 
 CUT = 5.0  # [s]
-SHOWN = 110
-SLOW, FAST = 60.0, 400.0  # [Hz]: a tracker, and one that sends more in that time than its publisher keeps
-AWAITING = 20.0  # [Hz]
+SAMPLE_COUNT = 110
+SLOW_LINK, FAST_LINK = 60.0, 400.0  # [Hz]: a tracker, and one that sends more in that time than its publisher keeps
+WAIT_TIMEOUT = 20.0  # [Hz]
 
 
 @contextmanager
@@ -59,8 +59,8 @@ class Glove:
 
     def send(self, count: int, rate: float) -> None:
         stream: list[Sample] = []
-        for first in range(self.sent // SHOWN, (self.sent + count) // SHOWN + 1):
-            stream += demonstration(1 + first * SHOWN)
+        for first in range(self.sent // SAMPLE_COUNT, (self.sent + count) // SAMPLE_COUNT + 1):
+            stream += demonstration(1 + first * SAMPLE_COUNT)
         publish(self._publisher, [s for s in stream if self.sent < s.sequence <= self.sent + count], rate=rate)
         self.sent += count
 
@@ -73,7 +73,7 @@ class Glove:
         before = self.received
 
         def heard() -> bool:
-            self.send(1, AWAITING)
+            self.send(1, WAIT_TIMEOUT)
             return self.received > before
 
         wait_until(heard, f"{self._name} is heard", pause=lambda _: None)
@@ -92,15 +92,15 @@ def test_what_the_publisher_still_has_comes_after_the_cut_and_what_it_has_not_is
             glove.reach()
         before = {glove: glove.sent for glove in (slow, fast)}
         proxy.drop(cut=True)
-        sending = threading.Thread(target=fast.send, args=(int(CUT * FAST), FAST))
+        sending = threading.Thread(target=fast.send, args=(int(CUT * FAST_LINK), FAST_LINK))
         sending.start()
-        slow.send(int(CUT * SLOW), SLOW)
+        slow.send(int(CUT * SLOW_LINK), SLOW_LINK)
         sending.join()
         assert {glove: glove.sent - before[glove] for glove in (slow, fast)} == {slow: 300, fast: 2000}
         proxy.go_on()
         for glove in (slow, fast):
             glove.reach()
-            glove.send(2 * SHOWN, FAST)
+            glove.send(2 * SAMPLE_COUNT, FAST_LINK)
         told = {glove: here.end(name, glove.sent) for name, glove in (("slow", slow), ("fast", fast))}
     assert (told[slow].lost, stretches(told[slow])) == (0, [])
     assert told[slow].received == slow.sent

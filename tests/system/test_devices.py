@@ -27,7 +27,7 @@ from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
 
-SHOWN = 353  # samples that the synthetic hand needs for one demonstration
+SAMPLE_COUNT = 353  # samples that the synthetic hand needs for one demonstration
 GLOVE = GloveCalibration((60.0,) * 22, (1 / 120,) * 22)
 TRACKER = "paper-hand"
 
@@ -54,7 +54,7 @@ def recording(service: Service) -> tracker_pb2.RecordingReport | None:
 def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
     service: Service, devices: tuple[Emulator, Emulator], tmp_path: Path
 ) -> None:
-    shown: list[HandReading] = list(itertools.islice(experiment_1(), SHOWN))
+    shown: list[HandReading] = list(itertools.islice(experiment_1(), SAMPLE_COUNT))
     tracker, glove = devices
     tracker.show(shown[0])
     options = {"fastrak.port": "fastrak", "glove.port": "glove", "glove.calibration": "glove.toml"}
@@ -78,7 +78,8 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
         assert tracker.played.wait(HANG)
         # Of a hand whose glove did not answer, because this machine stalled, no reading is sent.
         wait_until(
-            lambda: (report := recording(service)) and report.demonstrations and report.received > SHOWN, "it was cut"
+            lambda: (report := recording(service)) and report.demonstrations and report.received > SAMPLE_COUNT,
+            "it was cut",
         )
         os.kill(client.pid, signal.SIGINT)
         out, err = client.communicate(timeout=HANG)
@@ -107,7 +108,7 @@ def test_the_first_demonstration_of_the_paper_through_fastrak_and_cyberglove(
 
 
 def test_a_demonstration_from_a_topic_of_ros_2(service: Service) -> None:
-    shown = list(itertools.islice(experiment_1(), SHOWN))
+    shown = list(itertools.islice(experiment_1(), SAMPLE_COUNT))
     pose, grasp = "geometry_msgs/msg/PoseStamped", "std_msgs/msg/Bool"
     words = ["tracker", "--source", "ros2", "--option", "topic=/hand", "--option", "grasp=/closed", "--task", "ros"]
     words += ["--scene", "paper", "--tracker", TRACKER, "--endpoint", service.endpoint]
@@ -124,7 +125,7 @@ def test_a_demonstration_from_a_topic_of_ros_2(service: Service) -> None:
 
         def put(reading: HandReading) -> None:
             closed = sum(reading.flexions) / len(reading.flexions) > 0.5
-            peer.put("/closed", grasp, golden.GRASP if closed else golden.OPEN)
+            peer.put("/closed", grasp, golden.GRASP if closed else golden.OPEN_PREFIX)
             peer.put("/hand", pose, golden.posed(next(stamps), reading.position))
 
         def comes() -> bool:

@@ -12,7 +12,7 @@ import pytest
 
 from teachpath.io.store.motions import read_motion
 from teachpath_client import ClientError
-from tests.system.operators import STARVED
+from tests.system.operators import STARVED_REASONS
 from tests.system.processes import Service, run
 from tests.waiting import HANG, wait_until
 
@@ -69,7 +69,9 @@ def test_the_examples_show_a_task_learn_it_and_run_it_on_a_robot_of_their_own(dr
 
     def resume_when_starved() -> None:
         for execution in driven.station.executions():
-            if execution.status.state == "held" and execution.status.reason.startswith((*STARVED, "nothing was heard")):
+            if execution.status.state == "held" and execution.status.reason.startswith(
+                (*STARVED_REASONS, "nothing was heard")
+            ):
                 with suppress(ClientError):  # the example is in control, and gives it to whoever asks for it
                     driven.station.set_lease(driven.station.claim_lease("test", seconds=60.0, ask=True).token)
                 with suppress(ClientError):

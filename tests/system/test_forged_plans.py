@@ -27,7 +27,7 @@ from teachpath_proto.control import CommandVerb
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role, find_login
 from tests.system.processes import Service, run
-from tests.system.test_station import FAST, shown
+from tests.system.test_station import FAST_RATE, shown
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
@@ -35,7 +35,7 @@ pytestmark = pytest.mark.system
 ARM = Arm.of_variant()
 KEYS = Keys()
 TASK = "forged"
-STILL = 1e-3  # [rad] that an arm at rest gives way
+STILL_TOLERANCE = 1e-3  # [rad] that an arm at rest gives way
 LAB = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]  # places that its frame was taught by
 
 
@@ -74,7 +74,7 @@ def attacker(service: Service) -> Iterator[Attacker]:
         seen = len(one.positions)
         wait_until(lambda: len(one.positions) > seen + 20, "the arm speaks on")
         assert one.setpoints == []
-        assert np.ptp(one.positions, axis=0).max() < STILL
+        assert np.ptp(one.positions, axis=0).max() < STILL_TOLERANCE
     finally:
         bus.close()
 
@@ -85,7 +85,7 @@ def learn_and_plan(service: Service) -> list[Plan]:
     with Link(service.endpoint) as link:
         tracker = Tracker(link, "glove")
         tracker.start(TASK, scene="paper", calibration="lab")
-        tracker.publish(shown(12), speed=FAST)
+        tracker.publish(shown(12), speed=FAST_RATE)
         tracker.stop()
     for path in service.station.learn(TASK).learned.paths:
         with suppress(JobFailed):  # not every way leads past the obstacles
@@ -142,7 +142,7 @@ def of_another_station(plan: Plan) -> Plan:
     return sign_plan(plan, ARM, MotionSettings(), SigningKey(bytes(32)), issued_ns=signature.issued_ns)
 
 
-FORGED: dict[str, Callable[[Plan], Plan]] = {
+FORGED_PLANS: dict[str, Callable[[Plan], Plan]] = {
     "faster": lambda plan: certified(plan, squared_rates=4.0 * plan.squared_rates),
     "other joints": lambda plan: certified(plan, joints=plan.joints + 1e-9),
     "without obstacles": lambda plan: certified(plan, scene=Scene(plan.scene.name)),
@@ -156,14 +156,14 @@ FORGED: dict[str, Callable[[Plan], Plan]] = {
 }
 
 
-@pytest.mark.parametrize("how", list(FORGED))
+@pytest.mark.parametrize("how", list(FORGED_PLANS))
 def test_a_forged_plan_sent_straight_to_the_executor_moves_nothing(
     service: Service, plans: list[Plan], how: str
 ) -> None:
     with attacker(service) as one:
         one.serve_certificates()
         with pytest.raises(PathRefused) as refused:
-            one.start(FORGED[how](plans[0]))
+            one.start(FORGED_PLANS[how](plans[0]))
     said = str(refused.value)
     assert ("is not signed" if how == "unsigned" else "not one of this station's") in said
     assert "plan the path again at this station" in said

@@ -27,8 +27,8 @@ pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
 PICTURE = re.compile(r'<img\b[^>]*src="([^":]+)"')
-ODD = ["%00.html", "%FF.html", "%ED%A0%80.html", "x" * 5000 + ".html"]  # names that no file has
-FETCHED = re.compile(r"""<(?:script|img|link)\b[^>]*(?:src|href)="((?:https?:)?//[^"]*)""")
+ODD_NAMES = ["%00.html", "%FF.html", "%ED%A0%80.html", "x" * 5000 + ".html"]  # names that no file has
+FETCHED_PATTERN = re.compile(r"""<(?:script|img|link)\b[^>]*(?:src|href)="((?:https?:)?//[^"]*)""")
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,7 @@ def served(folder: Path) -> Iterator[str]:
 def test_nothing_is_fetched_from_another_machine(site: Path) -> None:
     pages = list(site.rglob("*.html"))
     assert len(pages) > 25
-    assert {page.name: found for page in pages if (found := FETCHED.findall(page.read_text()))} == {}
+    assert {page.name: found for page in pages if (found := FETCHED_PATTERN.findall(page.read_text()))} == {}
     assert [style.name for style in site.rglob("*.css") if re.search(r"url\(['\"]?https?:", style.read_text())] == []
 
 
@@ -105,7 +105,7 @@ def test_every_picture_is_given_out(site: Path, address: str) -> None:
         assert (answer.status_code, answer.headers["content-type"].split("/")[0]) == (200, "image"), name
 
 
-@pytest.mark.parametrize("name", ["%2e%2e/app.py", "..%2fapp.py", "none.html", "sitemap.xml.gz", "assets", *ODD])
+@pytest.mark.parametrize("name", ["%2e%2e/app.py", "..%2fapp.py", "none.html", "sitemap.xml.gz", "assets", *ODD_NAMES])
 def test_only_documents_are_given_out(address: str, name: str) -> None:
     answer = httpx.get(f"{address}/{name}", timeout=HANG, trust_env=False)
     assert (answer.status_code, "there is no document" in answer.text) == (404, True)

@@ -18,7 +18,7 @@ from teachpath_client.models import Execution
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role, find_login
 from teachpath_proto.sessions import joining, open_session
-from tests.system.operators import AGAIN, STARVED
+from tests.system.operators import RELEASE_CLUTCH_REASON, STARVED_REASONS
 from tests.system.processes import Service, stop_arm
 from tests.waiting import HANG, wait_until
 
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.system
 
 KEYS = Keys()
 CLUTCH = 4
-STILL = 1e-3  # [rad] that an arm at rest gives way
+STILL_TOLERANCE = 1e-3  # [rad] that an arm at rest gives way
 
 
 class Hand:
@@ -59,10 +59,10 @@ def leads(hand: Hand, station: Station, execution: str) -> bool:
     Where a busy machine made the executor hold the arm, it resumes, and the clutch is let go and pressed again.
     """
     status = station.get_execution(execution).status
-    if status.state == "held" and status.reason.startswith(STARVED):
+    if status.state == "held" and status.reason.startswith(STARVED_REASONS):
         with suppress(Refused):  # it goes on by itself meanwhile
             station.steer(execution, "resume")
-    hand.pressed = not status.reason.startswith(AGAIN)
+    hand.pressed = not status.reason.startswith(RELEASE_CLUTCH_REASON)
     return status.state == "following"
 
 
@@ -72,7 +72,7 @@ def moves(hand: Hand, station: Station, execution: str, positions: list[np.ndarr
         hand.place = (0.0, 0.03 - hand.place[1], 0.02)
     before = len(positions)
     wait_until(lambda: len(positions) > before + 20, "the arm speaks on")
-    return bool(np.ptp(positions[before:], axis=0).max() > STILL)
+    return bool(np.ptp(positions[before:], axis=0).max() > STILL_TOLERANCE)
 
 
 @contextmanager
@@ -119,7 +119,7 @@ def test_another_session_under_the_name_of_the_leading_hand_moves_nothing(tmp_pa
                 for other in (copy, stranger):
                     other.pressed, other.place = True, (0.0, 0.15, 0.1)
                 wait_until(lambda: len(positions) > before + 100, "the arm speaks on")
-                assert np.ptp(positions[before:], axis=0).max() < STILL
+                assert np.ptp(positions[before:], axis=0).max() < STILL_TOLERANCE
                 assert now().status.state == "held"
                 told = lambda: any("two sessions send samples as glove" in note for note in station.health().notes)  # noqa: E731
                 wait_until(told, "health says so, too")

@@ -21,10 +21,10 @@ from tests.unit.recording.hands import demonstration
 
 pytestmark = pytest.mark.system
 
-SHOWN = 110
+SAMPLE_COUNT = 110
 RATE = 50.0
 Payloads = list[bytes]
-TORN: list[Callable[[random.Random], bytes]] = [
+TORN_PAYLOADS: list[Callable[[random.Random], bytes]] = [
     lambda chance: b"",
     lambda chance: chance.randbytes(chance.randrange(1, 400)),
     lambda chance: json.dumps({"sequence": 1, "position": [0, 0, 0]}).encode(),
@@ -43,7 +43,7 @@ TORN: list[Callable[[random.Random], bytes]] = [
 
 def good(chance: random.Random) -> tracker_pb2.HandSample:
     return tracker_pb2.HandSample.FromString(
-        encode_sample(demonstration(chance.randrange(1, 10**6))[chance.randrange(SHOWN)])
+        encode_sample(demonstration(chance.randrange(1, 10**6))[chance.randrange(SAMPLE_COUNT)])
     )
 
 
@@ -74,7 +74,7 @@ def stamped(device_ns: int) -> bytes:
 
 
 def shown(takes: int) -> Payloads:
-    return [encode_sample(s) for i in range(takes) for s in demonstration(1 + i * SHOWN)]
+    return [encode_sample(s) for i in range(takes) for s in demonstration(1 + i * SAMPLE_COUNT)]
 
 
 def send(publisher: Any, payloads: Payloads) -> None:
@@ -114,7 +114,7 @@ def with_a_calm_take(here: Desk, mischief: Callable[[], None]) -> None:
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_thousand_malformed_payloads_are_counted_and_named(tmp_path: Path, seed: int) -> None:
     chance = random.Random(seed)
-    payloads = [TORN[i % len(TORN)](chance) for i in range(1000)]
+    payloads = [TORN_PAYLOADS[i % len(TORN_PAYLOADS)](chance) for i in range(1000)]
     chance.shuffle(payloads)
     with desk(tmp_path) as here:
         here.begin("fuzz", "fuzz")
@@ -138,7 +138,7 @@ def test_a_thousand_malformed_payloads_are_counted_and_named(tmp_path: Path, see
 
 
 def test_a_flood_at_a_hundred_times_the_rate_keeps_nobody_waiting(tmp_path: Path) -> None:
-    flood = [encode_sample(s) for i in range(100) for s in demonstration(1 + i * SHOWN)]
+    flood = [encode_sample(s) for i in range(100) for s in demonstration(1 + i * SAMPLE_COUNT)]
     with desk(tmp_path, longest_backlog=2000) as here:
         here.begin("flood", "flood")
         deepest, reports = 0, []
@@ -160,7 +160,7 @@ def test_a_flood_at_a_hundred_times_the_rate_keeps_nobody_waiting(tmp_path: Path
         with_a_calm_take(here, pour)
     (report,) = reports
     assert report.received + report.lost == len(flood)
-    assert deepest <= 2000 + 2 * SHOWN
+    assert deepest <= 2000 + 2 * SAMPLE_COUNT
     turned_away = any("came faster than they can be recorded" in note for note in report.notes)
     assert turned_away == (report.lost > 0)
 

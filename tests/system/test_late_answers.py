@@ -17,7 +17,7 @@ from tests.system.test_station import record
 pytestmark = pytest.mark.system
 
 TASK = "late"
-ANY = "[^/]*"
+ANY_SEGMENT = "[^/]*"
 A_WHILE = 1000  # [ms] in which what must not happen would show, on most machines; where it does not, nothing fails
 
 
@@ -122,7 +122,7 @@ def test_the_scene_that_is_drawn_is_that_of_the_task_that_is_chosen(browser: Any
 
 
 def test_an_error_is_not_wiped_away_by_what_was_asked_before_it(desk: Desk) -> None:
-    dendrogram = Late(desk, f"tasks/{TASK}/runs/{ANY}/dendrogram")
+    dendrogram = Late(desk, f"tasks/{TASK}/runs/{ANY_SEGMENT}/dendrogram")
     desk.page.reload()
     dendrogram.wait()
     desk.click("#new-task-button")
@@ -138,7 +138,7 @@ def test_an_error_is_not_wiped_away_by_what_was_asked_before_it(desk: Desk) -> N
 
 
 def test_a_cut_can_be_moved_only_when_it_is_that_of_the_run(desk: Desk) -> None:
-    dendrogram = Late(desk, f"tasks/{TASK}/runs/{ANY}/dendrogram")
+    dendrogram = Late(desk, f"tasks/{TASK}/runs/{ANY_SEGMENT}/dendrogram")
     desk.page.reload()
     desk.click("#tab-ways")
     slider = desk.page.get_by_label("height of the cut")
@@ -286,7 +286,7 @@ def test_nobody_starts_the_plan_of_the_path_that_was_looked_at_before(desk: Desk
 
 
 def test_a_preview_of_a_tab_that_was_left_does_not_open(desk: Desk) -> None:
-    motion = Late(desk, f"plans/{ANY}/motion")
+    motion = Late(desk, f"plans/{ANY_SEGMENT}/motion")
     desk.click("#tab-run")
     desk.page.get_by_role("button", name="Preview", exact=True).click()
     motion.wait()

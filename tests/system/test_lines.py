@@ -14,12 +14,12 @@ from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
 
-SHOWN = 110
+SAMPLE_COUNT = 110
 
 
 def test_what_a_client_skips_doubles_and_sends_late_is_named_number_by_number(tmp_path: Path) -> None:
     chance = random.Random(3)
-    stream = [s for i in range(4) for s in demonstration(1 + i * SHOWN)]
+    stream = [s for i in range(4) for s in demonstration(1 + i * SAMPLE_COUNT)]
     last = len(stream)
     gone = sorted({n for start in chance.sample(range(20, last - 20), 8) for n in range(start, start + 2)})
     left = [s for s in stream if s.sequence not in gone]
@@ -47,7 +47,7 @@ def test_what_a_client_skips_doubles_and_sends_late_is_named_number_by_number(tm
 
 
 def test_a_line_that_stalls_loses_nothing(tmp_path: Path) -> None:
-    stream = [s for i in range(3) for s in demonstration(1 + i * SHOWN)]
+    stream = [s for i in range(3) for s in demonstration(1 + i * SAMPLE_COUNT)]
     with desk(tmp_path) as here, bad_line(here) as (proxy, link):
         here.begin("glove", "lift")
         publisher = link.publisher(KEYS.samples("glove"))
@@ -66,8 +66,8 @@ def test_a_line_that_stalls_loses_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ours", [True, False])
 def test_a_line_that_breaks_loses_what_was_under_way_and_our_client_sends_it_again(tmp_path: Path, ours: bool) -> None:
-    takes = itertools.chain.from_iterable(demonstration(1 + i * SHOWN) for i in itertools.count())
-    other = [s for i in range(3) for s in demonstration(1 + i * SHOWN)]
+    takes = itertools.chain.from_iterable(demonstration(1 + i * SAMPLE_COUNT) for i in itertools.count())
+    other = [s for i in range(3) for s in demonstration(1 + i * SAMPLE_COUNT)]
     with desk(tmp_path) as here, bad_line(here) as (proxy, link):
         here.begin("glove", "lift")
         here.begin("calm", "other")
@@ -89,7 +89,7 @@ def test_a_line_that_breaks_loses_what_was_under_way_and_our_client_sends_it_aga
                 return here.report("glove").received > 200
 
             wait_until(back, "the line is back", pause=lambda _: time.sleep(1 / 60))
-            rest = -last % SHOWN + 2 * SHOWN  # two whole takes more
+            rest = -last % SAMPLE_COUNT + 2 * SAMPLE_COUNT  # two whole takes more
             publish(publisher, list(itertools.islice(takes, rest)), rate=60.0)
             last += rest
             calm.join()

@@ -9,7 +9,7 @@ import pytest
 from teachpath_client import HandReading, Link, Tracker
 from teachpath_client.synthetic import RATE
 from tests.system.processes import Service, run
-from tests.system.test_station import FAST, SHOWN, shown
+from tests.system.test_station import FAST_RATE, SAMPLE_COUNT, shown
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
@@ -27,7 +27,7 @@ def moved(
     share = np.clip((points[:, 1] + 0.28) / 0.56, 0.0, 1.0)[:, None]
     points[:, :2] += (1 - share) * place + share * np.array(goal)
     return [
-        HandReading((number * SHOWN + k) / RATE, tuple(point), reading.orientation, reading.flexions)
+        HandReading((number * SAMPLE_COUNT + k) / RATE, tuple(point), reading.orientation, reading.flexions)
         for k, (reading, point) in enumerate(zip(readings, points.tolist(), strict=True))
     ]
 
@@ -39,7 +39,9 @@ def has_come(service: Service, samples: int) -> bool:
 def test_a_task_is_shown_at_changing_places_and_done_at_a_new_one(service: Service, tmp_path: Path) -> None:
     station = service.station
     x, y, z = station.get_object("paper").position
-    between = [list(shown(7))[k * SHOWN : (k + 1) * SHOWN] for k in (1, 4, 1, 4)]  # of one way of the paper's
+    between = [
+        list(shown(7))[k * SAMPLE_COUNT : (k + 1) * SAMPLE_COUNT] for k in (1, 4, 1, 4)
+    ]  # of one way of the paper's
     with Link(service.endpoint) as link:
         tracker = Tracker(link, "glove-moved")
         tracker.start(TASK, scene="paper")
@@ -47,8 +49,8 @@ def test_a_task_is_shown_at_changing_places_and_done_at_a_new_one(service: Servi
             for number, readings in enumerate(between):
                 place, goal = PLACES[number], GOALS[number]
                 station.tell_object("paper", (x + place[0], y + place[1], z))
-                tracker.publish(moved(readings, number, place, goal), speed=FAST)
-                wait_until(partial(has_come, service, (number + 1) * SHOWN), "its samples are recorded")
+                tracker.publish(moved(readings, number, place, goal), speed=FAST_RATE)
+                wait_until(partial(has_come, service, (number + 1) * SAMPLE_COUNT), "its samples are recorded")
         finally:
             station.reset_object("paper")
             report = tracker.stop()

@@ -22,7 +22,7 @@ from teachpath.records import Capability, Person
 from tests.conftest import chromium, find_chromium
 from tests.system.carriers import HEADSET, carry_worn, move_hand, phase
 from tests.system.operators import Leader
-from tests.system.processes import BUSY, Command
+from tests.system.processes import BUSY_SETTINGS, Command
 from tests.system.test_view import Visit
 from tests.waiting import HANG, wait_until
 
@@ -30,7 +30,7 @@ pytestmark = pytest.mark.system
 
 NAME, PASSWORD = "robot.teachpath.internal", "four words put together"
 ASSETS = Path(__file__).parent / "assets"
-HERE, THERE = "10.213.0.1", "10.213.0.2"
+THIS_ADDRESS, OTHER_ADDRESS = "10.213.0.1", "10.213.0.2"
 TASK = "far"
 
 
@@ -54,10 +54,10 @@ def namespaces() -> Iterator[tuple[str, str]]:
             made.append(name)
         for words in (
             f"-n {near} link add line type veth peer name line netns {far}",
-            f"-n {near} addr add {HERE}/30 dev line",
+            f"-n {near} addr add {THIS_ADDRESS}/30 dev line",
             f"-n {near} link set line up",
             f"-n {near} link set lo up",
-            f"-n {far} addr add {THERE}/30 dev line",
+            f"-n {far} addr add {OTHER_ADDRESS}/30 dev line",
             f"-n {far} link set line up",
         ):
             subprocess.run(["ip", *words.split()], check=True, timeout=HANG)
@@ -88,9 +88,9 @@ def address(data: Path, namespaces: tuple[str, str]) -> Iterator[str]:
         *("serve", "--data", str(data)),
         folder=data.parent,
         environment={
-            **BUSY,
+            **BUSY_SETTINGS,
             "TEACHPATH_AUTH__MODE": "token",
-            "TEACHPATH_WEB__HOST": HERE,
+            "TEACHPATH_WEB__HOST": THIS_ADDRESS,
             "TEACHPATH_WEB__HOSTS": f'["{NAME}"]',
         },
         under=("ip", "netns", "exec", namespaces[0]),
@@ -115,7 +115,7 @@ def far_browser(namespaces: tuple[str, str], data: Path, tmp_path_factory: pytes
     authority = data / "tls" / "authority.pem"
     for words in (["-N", "--empty-password"], ["-A", "-n", "station", "-t", "C,,", "-i", str(authority)]):
         subprocess.run(["certutil", "-d", f"sql:{trusted}", *words], check=True, timeout=HANG)
-    known = f"--host-resolver-rules=MAP {NAME} {HERE}"
+    known = f"--host-resolver-rules=MAP {NAME} {THIS_ADDRESS}"
     with chromium(f"ip netns exec {namespaces[1]} {find_chromium()}", known, HOME=str(home)) as browser:
         yield browser
 

@@ -30,7 +30,7 @@ pytestmark = [
     pytest.mark.skipif(os.name == "nt" or os.geteuid() != 0, reason="only root may become another user"),
 ]
 KEYS = Keys()
-STILL = 1e-3  # [rad] that an arm at rest gives way
+STILL_TOLERANCE = 1e-3  # [rad] that an arm at rest gives way
 
 
 @pytest.fixture(scope="module")
@@ -128,7 +128,7 @@ def test_another_user_of_the_machine_reads_nothing_and_moves_nothing(
     finally:
         bus.close()
     assert heard == []
-    assert np.ptp(positions, axis=0).max() < STILL
+    assert np.ptp(positions, axis=0).max() < STILL_TOLERANCE
 
 
 def lease(service: Service) -> None:

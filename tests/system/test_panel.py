@@ -15,7 +15,7 @@ from teachpath_client import Link, Tracker
 from tests.system.access import barriers
 from tests.system.operators import Leader, Shown
 from tests.system.processes import Service
-from tests.system.test_station import FAST, SHOWN, shown
+from tests.system.test_station import FAST_RATE, SAMPLE_COUNT, shown
 from tests.system.test_view import Visit
 from tests.waiting import wait_until
 
@@ -52,10 +52,10 @@ def test_every_demonstration_has_its_verdict_and_what_is_wrong_with_it(visit: Vi
     with Link(service.endpoint) as link:
         tracker = Tracker(link, "glove-judged")
         tracker.start("judged", scene="paper")
-        tracker.publish(shown(1), speed=FAST)
+        tracker.publish(shown(1), speed=FAST_RATE)
         tracker.stop()
         tracker.start("judged")
-        tracker.publish(bad, speed=FAST)
+        tracker.publish(bad, speed=FAST_RATE)
         tracker.stop()
     visit.page.wait_for_selector("#task option[value=judged]", state="attached")
     visit.page.select_option("#task", "judged")
@@ -100,12 +100,12 @@ def test_a_recording_is_paused_and_resumed_from_the_page(visit: Visit, service: 
         visit.page.select_option("#task", "paused")
         visit.page.get_by_role("button", name="Pause").click()
         until(visit, f"{text('recordings')}.includes('Recording glove-paused: paused')")
-        tracker.publish(shown(1), speed=FAST)
-        wait_until(lambda: service.station.recordings("paused")[0].received == SHOWN, "all of it has come")
+        tracker.publish(shown(1), speed=FAST_RATE)
+        wait_until(lambda: service.station.recordings("paused")[0].received == SAMPLE_COUNT, "all of it has come")
         visit.page.get_by_role("button", name="Resume").click()
         until(visit, f"{text('recordings')}.includes('Recording glove-paused: reach')")
         report = tracker.stop()
-    assert (report.received, report.idle, len(report.demonstrations)) == (SHOWN, SHOWN, 0)
+    assert (report.received, report.idle, len(report.demonstrations)) == (SAMPLE_COUNT, SAMPLE_COUNT, 0)
     assert visit.said == []
 
 

@@ -16,7 +16,7 @@ from teachpath_client.models import Demonstration, RecordingReport
 from teachpath_proto import tracker_pb2
 from teachpath_proto.keys import Keys
 from tests.system.processes import Service
-from tests.system.test_station import FAST, SHOWN, record, shown
+from tests.system.test_station import FAST_RATE, SAMPLE_COUNT, record, shown
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system
@@ -97,7 +97,7 @@ def test_a_tracker_that_is_killed_in_mid_take_leaves_a_reject_that_says_so(servi
     with Link(service.endpoint) as link:  # and the next client of that name may begin
         tracker = Tracker(link, "glove-killed")
         tracker.start("killed")
-        tracker.publish(shown(1), speed=FAST)
+        tracker.publish(shown(1), speed=FAST_RATE)
         assert len(tracker.stop().demonstrations) == 1
     assert [d.verdict for d in service.station.demonstrations("killed")][-2:] == ["reject", "clean"]
 
@@ -163,11 +163,11 @@ def test_a_thousand_malformed_samples_are_counted_and_other_takes_are_untouched(
         raining.start()
         calm = record(service, "calm", 2)
         raining.join()
-        fuzzed.publish(shown(1), speed=FAST)
+        fuzzed.publish(shown(1), speed=FAST_RATE)
         report = fuzzed.stop()
-    assert (calm.received, calm.lost, len(calm.demonstrations)) == (2 * SHOWN, 0, 2)
+    assert (calm.received, calm.lost, len(calm.demonstrations)) == (2 * SAMPLE_COUNT, 0, 2)
     assert [d.verdict for d in service.station.demonstrations("calm")] == ["clean", "clean"]
-    assert report.received + report.refused == 1000 + SHOWN
+    assert report.received + report.refused == 1000 + SAMPLE_COUNT
     assert report.refused > 800
     assert report.notes
     assert all(len(note) < 400 for note in report.notes)
@@ -229,7 +229,7 @@ def test_a_client_that_stops_without_a_word_is_not_waited_for(impatient: Service
     with Link(service.endpoint) as link:
         tracker = Tracker(link, "glove-mute")
         tracker.start("mute", scene="paper")
-        tracker.publish(list(shown(1))[:200], speed=FAST)
+        tracker.publish(list(shown(1))[:200], speed=FAST_RATE)
         wait_until(lambda: service.station.demonstrations("mute"), "the take ends by itself while the client lives")
         (only,) = service.station.demonstrations("mute")
         assert (only.verdict, only.reasons[0]) == ("reject", f"no sample came for {SILENCE} s in mid-take")

@@ -15,13 +15,13 @@ from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
 
-SHOWN = 353  # readings of the first demonstration; it carries from 83 to 256
-STOPPED, STARTED = 150, 200
+SAMPLE_COUNT = 353  # readings of the first demonstration; it carries from 83 to 256
+STOP_SAMPLE, START_SAMPLE = 150, 200
 
 
 def readings(at: dict[int, Callable[[], object]]) -> Iterator[HandReading]:
     """Yield one demonstration, and call something before some of its readings."""
-    for number, reading in enumerate(itertools.islice(experiment_1(), SHOWN)):
+    for number, reading in enumerate(itertools.islice(experiment_1(), SAMPLE_COUNT)):
         at.get(number, lambda: None)()
         yield reading
 
@@ -53,7 +53,7 @@ def test_a_planned_restart_in_mid_take_loses_nothing(tmp_path: Path) -> None:
     with first, Link(first.endpoint) as link:
         tracker = Tracker(link, "glove")
         tracker.start("carry", scene="paper")
-        tracker.publish(readings({STOPPED: stop, STARTED: start, SHOWN - 1: is_back}), speed=8.0)
+        tracker.publish(readings({STOP_SAMPLE: stop, START_SAMPLE: start, SAMPLE_COUNT - 1: is_back}), speed=8.0)
         with second[0] as service:
             report = tracker.stop()
             assert (report.lost, len(report.demonstrations)) == (0, 1), report

@@ -8,7 +8,7 @@ import pytest
 
 from teachpath.offline.report import write_package
 from tests.system.packages import Package
-from tests.unit.offline.reviews import COUNT, HOSTILE, learned_store, review
+from tests.unit.offline.reviews import COUNT, HOSTILE_TEXT, learned_store, review
 
 pytestmark = pytest.mark.system
 
@@ -73,9 +73,9 @@ def test_nothing_can_be_ordered_in_it(package: Package) -> None:
 
 def test_hostile_text_is_shown_as_it_is_written(package: Package) -> None:
     page = package.page
-    assert page.locator("#learned .note", has_text="alert(1)").first.inner_text() == HOSTILE
+    assert page.locator("#learned .note", has_text="alert(1)").first.inner_text() == HOSTILE_TEXT
     page.locator("#tab-demonstrations").click()
-    assert page.locator("#task .why").all_inner_texts() == [HOSTILE] * COUNT
+    assert page.locator("#task .why").all_inner_texts() == [HOSTILE_TEXT] * COUNT
     assert page.locator("img").count() == 0
 
 

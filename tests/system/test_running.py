@@ -12,7 +12,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath_client.models import Plan
 from tests.system.access import barriers
 from tests.system.carriers import HEADSET, begin, carry, carry_worn, move_hand, phase
-from tests.system.operators import RESTING, Leader, Operator, Status, named_joints
+from tests.system.operators import RESTING_STATES, Leader, Operator, Status, named_joints
 from tests.system.processes import Service, stop_arm
 from tests.system.test_view import REST, Visit
 from tests.waiting import wait_until
@@ -31,18 +31,18 @@ TAP = """() => {
   for (const name of ["pointerdown", "pointerup"]) button.dispatchEvent(new PointerEvent(name, { bubbles: true }));
 }"""
 SCRIPT = (ASSETS / "iwer" / "iwer.min.js").read_text() + HEADSET
-SMALL, SMALLER = (900, 420), (900, 240)  # less to draw
+SMALL_WINDOW, SMALLER_WINDOW = (900, 420), (900, 240)  # less to draw
 Plans = list[Plan]  # one a way, in the order in which the ways were shown: by mouse, by the headset's hand
 
 
 @pytest.fixture(scope="module")
 def plans(browser: Any, service: Service) -> Plans:
     """What was shown twice by mouse and twice by a headset's hand, learned and certified: all in the page."""
-    visit = Visit(browser, service.url, script=SCRIPT, size=SMALL)
+    visit = Visit(browser, service.url, script=SCRIPT, size=SMALL_WINDOW)
     for size, button, show in (
-        (SMALL, "Show it here", lambda _: carry(visit)),
+        (SMALL_WINDOW, "Show it here", lambda _: carry(visit)),
         # No hand does the same twice: two that agree to the bit would make any other two look like two ways.
-        (SMALLER, "In a headset", lambda nth: carry_worn(visit, move_hand, rise=0.24 + 0.005 * nth)),
+        (SMALLER_WINDOW, "In a headset", lambda nth: carry_worn(visit, move_hand, rise=0.24 + 0.005 * nth)),
     ):
         visit.page.set_viewport_size({"width": size[0], "height": size[1]})
         begin(visit, service, TASK, button=button)
@@ -73,7 +73,7 @@ def plans(browser: Any, service: Service) -> Plans:
 @pytest.fixture
 def visit(browser: Any, service: Service, plans: Plans) -> Iterator[Visit]:
     """A page of its own for every test."""
-    visit = Visit(browser, service.url, script=SCRIPT, size=SMALL)
+    visit = Visit(browser, service.url, script=SCRIPT, size=SMALL_WINDOW)
     yield visit
     visit.page.close()
 
@@ -92,9 +92,9 @@ def operator(visit: Visit, service: Service, plans: Plans) -> Iterator[Operator]
     operator = Operator(visit, service.station)
     yield operator
     for one in operator.executions():
-        if one.status.state not in RESTING:
+        if one.status.state not in RESTING_STATES:
             stop_arm(service.station, one.id)
-    wait_until(lambda: all(one.status.state in RESTING for one in operator.executions()), "the arm rests")
+    wait_until(lambda: all(one.status.state in RESTING_STATES for one in operator.executions()), "the arm rests")
 
 
 def ghost(visit: Visit) -> np.ndarray:
@@ -194,7 +194,7 @@ def test_the_space_bar_stops_the_arm_wherever_the_focus_is(visit: Visit, operato
     creep(visit, operator)
     visit.page.locator("#tab-ways").focus()
     visit.page.keyboard.press("Space")
-    status = operator.until(lambda status: status["state"] in RESTING)
+    status = operator.until(lambda status: status["state"] in RESTING_STATES)
     assert (status["state"], status["progress"] < 1.0) == ("ended", True), status["reason"]
     assert operator.said == []
 
@@ -203,7 +203,7 @@ def test_the_way_shown_by_a_headset_s_hand_is_run_to_its_goal(visit: Visit, oper
     choose(visit, plans[1])
     visit.page.get_by_role("slider", name="Speed").fill("100")
     operator.start()
-    status = operator.until(lambda status: status["state"] in RESTING)
+    status = operator.until(lambda status: status["state"] in RESTING_STATES)
     assert (status["state"], status["progress"]) == ("ended", 1.0), status["reason"]
     assert operator.executions()[0].plan == plans[1].id
     assert operator.said == []
@@ -211,7 +211,7 @@ def test_the_way_shown_by_a_headset_s_hand_is_run_to_its_goal(visit: Visit, oper
 
 def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, operator: Operator) -> None:
     operator.start()
-    operator.until(lambda status: status["state"] in RESTING)
+    operator.until(lambda status: status["state"] in RESTING_STATES)
     last = operator.executions()[0]
     before = visit.place_at_rest("/robot/link6")
     visit.page.route("**/api/v1/robot", named_joints)

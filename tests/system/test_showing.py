@@ -11,7 +11,7 @@ import pytest
 from tests.system.carriers import (
     GOAL,
     HEADSET,
-    HEAR,
+    HEAR_SCRIPT,
     START,
     begin,
     carry_worn,
@@ -28,7 +28,7 @@ from tests.system.processes import Service
 from tests.system.stories import Fingers, Mouse, tell
 from tests.system.test_view import Visit
 
-LOW = START[2] + 0.05  # [m]
+LOW_HEIGHT = START[2] + 0.05  # [m]
 SIZE = (900, 420)  # which leaves the machine to the sampling
 MOST_ACTS = 12  # from the first press to the first motion
 ASSETS = Path(__file__).parent / "assets"
@@ -81,7 +81,11 @@ def test_a_take_by_keyboard(visit: Visit, service: Service) -> None:
     keys.press("Enter")
     phase(visit, "carrying")
     far = f"Math.hypot(at[0] - {START[0]}, at[1] - {START[1]}) > 0.1"
-    for key, there in (("PageUp", f"at[2] > {START[2] + 0.1}"), ("ArrowLeft", far), ("PageDown", f"at[2] < {LOW}")):
+    for key, there in (
+        ("PageUp", f"at[2] > {START[2] + 0.1}"),
+        ("ArrowLeft", far),
+        ("PageDown", f"at[2] < {LOW_HEIGHT}"),
+    ):
         keys.down(key)
         until_box(visit, there)
         keys.up(key)
@@ -179,7 +183,7 @@ def test_pictures_never_tear_a_hole_into_a_take_and_come_back_after_it(visit: Vi
 
 
 def test_takes_by_an_emulated_hand_and_a_controller_in_one_headset(worn: Visit, service: Service) -> None:
-    worn.page.evaluate(HEAR)
+    worn.page.evaluate(HEAR_SCRIPT)
     begin(worn, service, "by-headset", button="In a headset")
     carry_worn(worn, move_hand)
     phase(worn, "ready")

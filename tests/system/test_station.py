@@ -25,16 +25,16 @@ from tests.waiting import HANG, wait_until
 pytestmark = pytest.mark.system
 
 KEYS = Keys()
-SHOWN = 353  # samples that the synthetic hand needs for one demonstration
-FAST = 50.0
+SAMPLE_COUNT = 353  # samples that the synthetic hand needs for one demonstration
+FAST_RATE = 50.0
 
 
 def shown(count: int) -> Iterable[HandReading]:
     """Return the readings of the first `count` demonstrations of the paper's experiment."""
-    return itertools.islice(experiment_1(), count * SHOWN)
+    return itertools.islice(experiment_1(), count * SAMPLE_COUNT)
 
 
-def record(service: Service, task: str, count: int, *, speed: float = FAST) -> tracker_pb2.RecordingReport:
+def record(service: Service, task: str, count: int, *, speed: float = FAST_RATE) -> tracker_pb2.RecordingReport:
     with Link(service.endpoint) as link:
         tracker = Tracker(link, f"glove-{task}")
         tracker.start(task, scene="paper")
@@ -59,7 +59,7 @@ def write_csv(file: Path, *, rows: int = 100, text: str = "") -> Path:
 
 def test_a_take_over_zenoh_can_be_read_by_others_and_replayed(service: Service, tmp_path: Path) -> None:
     report = record(service, "carry", 2)
-    assert (report.received, report.lost, report.refused) == (2 * SHOWN, 0, 0)
+    assert (report.received, report.lost, report.refused) == (2 * SAMPLE_COUNT, 0, 0)
     stored = service.station.demonstrations("carry")
     assert [d.id for d in stored] == list(report.demonstrations)
     assert [d.verdict for d in stored] == ["clean", "clean"]
@@ -76,7 +76,7 @@ def test_a_take_over_zenoh_can_be_read_by_others_and_replayed(service: Service, 
             p = message.position
             assert (p.x, p.y, p.z) == reading.position
 
-    again = run("replay", "carry", "--url", service.url, "--speed", str(FAST), folder=tmp_path)
+    again = run("replay", "carry", "--url", service.url, "--speed", str(FAST_RATE), folder=tmp_path)
     assert again.process.returncode == 0, again.err
     replayed = service.station.demonstrations("carry-replayed")
     assert [d.verdict for d in replayed] == ["clean", "clean"]
@@ -99,14 +99,14 @@ def test_rubbish_during_a_take_is_counted_and_harms_nothing(service: Service) ->
     with Link(service.endpoint) as link:
         tracker = Tracker(link, "glove-rubbish")
         tracker.start("rubbish", scene="paper")
-        tracker.publish(readings[:120], speed=FAST)
+        tracker.publish(readings[:120], speed=FAST_RATE)
         publisher = link.publisher(KEYS.samples("glove-rubbish"))
         for payload in bad:
             publisher.put(payload)
         publisher.put(readings[10].message(11, 1).SerializeToString())  # a number that went back, at another time
-        tracker.publish(readings[120:], speed=FAST)
+        tracker.publish(readings[120:], speed=FAST_RATE)
         report = tracker.stop()
-    assert (report.received, report.refused, report.conflicts, report.lost) == (SHOWN + 1, len(bad), 1, 0)
+    assert (report.received, report.refused, report.conflicts, report.lost) == (SAMPLE_COUNT + 1, len(bad), 1, 0)
     assert any("not finite" in note for note in report.notes)
     assert any("10485760 bytes" in note for note in report.notes)
     (demonstration,) = service.station.demonstrations("rubbish")
@@ -150,8 +150,8 @@ def test_a_flood_and_a_page_that_does_not_read_do_not_starve_a_take(service: Ser
         finally:
             over.set()
             flooding.join()
-    assert next(sent) > 2 * SHOWN
-    assert (report.received, report.lost, len(report.demonstrations)) == (2 * SHOWN, 0, 2)
+    assert next(sent) > 2 * SAMPLE_COUNT
+    assert (report.received, report.lost, len(report.demonstrations)) == (2 * SAMPLE_COUNT, 0, 2)
     assert [d.verdict for d in service.station.demonstrations("flooded")] == ["clean", "clean"]
 
 

@@ -13,14 +13,14 @@ from teachpath.motion.arm.model import Arm
 from teachpath_client.station import Station
 from tests.system.demos import Start, assert_nothing_left, assert_story
 from tests.system.editors import Desk
-from tests.system.operators import RESTING, Operator
+from tests.system.operators import RESTING_STATES, Operator
 from tests.waiting import wait_until
 
 ARM = Arm.of_variant()
 
 pytestmark = pytest.mark.system
 
-NEAR = 0.001  # [m] from the setpoints on the path to the nearest of the places of it that are compared
+NEAR_DISTANCE = 0.001  # [m] from the setpoints on the path to the nearest of the places of it that are compared
 
 
 def test_what_the_demo_has_learned_is_edited_certified_run_and_replayed(
@@ -62,7 +62,7 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     desk.page.wait_for_selector("#preview:has-text('Way 2, version 2')")
     operator = Operator(desk, station)
     operator.start()
-    status = operator.until(lambda status: status["state"] in RESTING)
+    status = operator.until(lambda status: status["state"] in RESTING_STATES)
     assert (status["state"], status["progress"]) == ("ended", 1.0), status["reason"]
     done = operator.executions()[0]
     plan = station.get_plan(done.plan or "")
@@ -77,8 +77,8 @@ def tell(browser: Any, url: str, station: Station, tmp_path: Path) -> None:
     followed = np.array([setpoint.position for setpoint in read_motion(file).setpoints if setpoint.on_path])
     places, fine = tool_pose(followed, ARM)[:, :3, 3], edited(np.linspace(0, 1, 1001))
     apart = np.array([np.linalg.norm(fine - place, axis=1).min() for place in places])
-    assert apart.max() < NEAR, apart.max()
-    assert np.linalg.norm(places[[0, -1]] - fine[[0, -1]], axis=1).max() < NEAR
+    assert apart.max() < NEAR_DISTANCE, apart.max()
+    assert np.linalg.norm(places[[0, -1]] - fine[[0, -1]], axis=1).max() < NEAR_DISTANCE
     shown = float(slider.get_attribute("max") or 0)  # what was written when it was opened
     assert plan.duration < shown <= series.times[-1] - series.times[0] + 1e-6
     desk.close()

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.system
 
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorial.md"
 MODULES = {".venv/bin/teachpath": "teachpath", ".venv/bin/teachpath-client": "teachpath_client"}
-SAID = {  # what the reader is told to see
+SAID_WORDS = {  # what the reader is told to see
     "demonstrations cup": "clean",
     "learn cup": "Learned paths",
     "plan cup/2": "least clearance",
@@ -49,6 +49,6 @@ def test_it_leads_from_nothing_to_a_moved_arm_and_its_report(tmp_path: Path) -> 
             )
             assert done.returncode == 0, (words, done.stderr)
             seen[" ".join(words)] = done.stdout + done.stderr
-    assert {words: sentence in seen.get(words, "") for words, sentence in SAID.items()} == dict.fromkeys(SAID, True), (
-        seen
-    )
+    assert {words: sentence in seen.get(words, "") for words, sentence in SAID_WORDS.items()} == dict.fromkeys(
+        SAID_WORDS, True
+    ), seen

@@ -153,7 +153,7 @@ def server() -> Iterator[Server]:
 
 
 # What a page has that does not get ready: what it lacks is not there.
-HELD = """() => {
+HELD_SCRIPT = """() => {
   const state = Object.entries(globalThis.teachpath?.state() ?? {});
   const lists = state.map(([name, value]) => `${name} ${value?.length ?? JSON.stringify(value)}`);
   return [JSON.stringify(document.documentElement.dataset), ...lists].join(", ").slice(0, 3000);
@@ -192,7 +192,7 @@ class Visit:
             # What the service draws comes another way than what the page does, all of it at once.
             self.page.wait_for_function("() => teachpath.worldMatrix('/robot/link6')", polling=20)
         except Exception as error:
-            error.add_note(f"the console said {self.said}; the page holds {self.page.evaluate(HELD)}")
+            error.add_note(f"the console said {self.said}; the page holds {self.page.evaluate(HELD_SCRIPT)}")
             raise
 
     def _on_response(self, answer: Any) -> None:

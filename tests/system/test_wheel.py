@@ -28,7 +28,7 @@ EXTRAS = {
     "s3": "obstore.store",
 }
 CLIENT = "import teachpath_client, sys; print(teachpath_client.__version__)"
-LEARN = """
+LEARN_PROGRAM = """
 import numpy as np, teachpath
 from importlib.metadata import entry_points
 [reader.load() for reader in entry_points(group="teachpath.readers")]
@@ -114,7 +114,7 @@ def test_the_client_alone_has_its_command_and_nothing_of_the_service(wheel: Path
 
 def test_the_service_learns_and_serves_its_page(service: Environment, served: str) -> None:
     assert service.run("-m", "teachpath", "--version") == f"teachpath {teachpath.__version__}\n"
-    assert int(service.run("-c", LEARN)) == 1
+    assert int(service.run("-c", LEARN_PROGRAM)) == 1
     page = httpx.get(served, timeout=HANG)
     assert page.is_success
     assert "<title>" in page.text

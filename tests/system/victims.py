@@ -24,7 +24,7 @@ from teachpath_proto.keys import Keys
 from tests.unit.recording.hands import demonstration
 from tests.waiting import wait_until
 
-TOGETHER = 10  # victims that live at one time
+PARALLEL_VICTIMS = 10  # victims that live at one time
 RATE = 100.0  # [Hz] that a victim is sent
 BATCH = 5  # samples that are sent at a time
 LIVES = (20, 320)  # samples
@@ -80,5 +80,5 @@ def kill_some(root: Path, lives: list[int], first: int) -> None:
 if __name__ == "__main__":
     root, count, seed = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     chance = random.Random(seed)
-    for begin in range(0, count, TOGETHER):
-        kill_some(root, [chance.randint(*LIVES) for _ in range(min(TOGETHER, count - begin))], begin)
+    for begin in range(0, count, PARALLEL_VICTIMS):
+        kill_some(root, [chance.randint(*LIVES) for _ in range(min(PARALLEL_VICTIMS, count - begin))], begin)

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2] / "service" / "teachpath"
-CALLED = "from teachpath.compiled import compiled\n@compiled()\ndef once(x):\n    return x + {}\n"
+CALLED_PROGRAM = "from teachpath.compiled import compiled\n@compiled()\ndef once(x):\n    return x + {}\n"
 CALLER = (
     "from teachpath.compiled import compiled\nfrom kernels.called import once\n"
     "@compiled()\ndef twice(x):\n    return once(once(x))\n"
@@ -27,11 +27,11 @@ def test_a_kernel_is_compiled_anew_when_one_that_it_calls_has_changed(tmp_path: 
     package = tmp_path / "kernels"
     package.mkdir()
     (package / "__init__.py").touch()
-    (package / "called.py").write_text(CALLED.format("1.0"))
+    (package / "called.py").write_text(CALLED_PROGRAM.format("1.0"))
     (package / "caller.py").write_text(CALLER)
     assert twice(tmp_path) == [12.0, 0]
     assert twice(tmp_path) == [12.0, 1]
-    (package / "called.py").write_text(CALLED.format("100.0"))
+    (package / "called.py").write_text(CALLED_PROGRAM.format("100.0"))
     assert twice(tmp_path) == [210.0, 0]
 
 

@@ -24,7 +24,7 @@ from teachpath.exchange import SAME_SHAPE_TOLERANCE, from_json, to_json
 from teachpath.nurbs import Curve
 
 U = np.linspace(0.0, 1.0, 401)
-TIGHT = 1e-9  # m, of operations that are exact but for rounding
+TIGHT_TOLERANCE = 1e-9  # m, of operations that are exact but for rounding
 
 
 @st.composite
@@ -59,7 +59,7 @@ def test_an_inserted_knot_adds_a_control_point_and_leaves_the_shape(curve: Curve
     more = inserted(curve, u)
     if more is not None:
         assert len(more.control_points) == len(curve.control_points) + 1
-        assert np.abs(more(U) - curve(U)).max() <= TIGHT
+        assert np.abs(more(U) - curve(U)).max() <= TIGHT_TOLERANCE
 
 
 @settings(max_examples=60, deadline=None)
@@ -93,7 +93,7 @@ def test_a_removed_knot_moves_the_curve_by_its_tolerance_at_most(curve: Curve, p
 def test_a_raised_degree_leaves_the_shape_and_every_corner(curve: Curve) -> None:
     raised = elevate_degree(curve)
     assert raised.curve.degree == curve.degree + 1
-    assert raised.deviation <= TIGHT
+    assert raised.deviation <= TIGHT_TOLERANCE
     before = dict(zip(*np.unique(curve.knots, return_counts=True), strict=True))
     after = dict(zip(*np.unique(raised.curve.knots, return_counts=True), strict=True))
     assert after == {u: count + 1 for u, count in before.items()}
@@ -104,7 +104,7 @@ def test_a_raised_degree_leaves_the_shape_and_every_corner(curve: Curve) -> None
 def test_operations_on_different_knots_can_be_exchanged(curve: Curve, u: float) -> None:
     more = inserted(curve, u)
     if more is not None:
-        assert np.abs(elevate_degree(more).curve(U) - elevate_degree(curve).curve(U)).max() <= TIGHT
+        assert np.abs(elevate_degree(more).curve(U) - elevate_degree(curve).curve(U)).max() <= TIGHT_TOLERANCE
 
 
 @settings(max_examples=40, deadline=None)
@@ -188,8 +188,8 @@ def changed(**fields: object) -> Curve:
     return Curve(**{**values, **fields})  # type: ignore[arg-type]
 
 
-NAN, FAR, POINTS = float("nan"), np.array([1e300, 0, 0]), straight().control_points
-BAD = {
+NAN, FAR_CURVE, POINTS = float("nan"), np.array([1e300, 0, 0]), straight().control_points
+INVALID_CURVES = {
     "has a knot, control point or weight that is not finite": {"weights": [1, 1, NAN, 1, 1, 1]},
     "need 6 weights, got 5": {"weights": np.ones(5)},
     "need 10 knots, got 9": {"knots": straight().knots[1:]},
@@ -197,17 +197,17 @@ BAD = {
     "begins with 4 knots 0": {"knots": np.linspace(0, 1, 10)},
     "weights are positive": {"weights": [1, 1, 0, 1, 1, 1]},
     f"limits {WEIGHT_LIMITS[0]:g} to {WEIGHT_LIMITS[1]:g}; move": {"weights": [1, 1, 1e4, 1, 1, 1]},
-    f"control point 1 is 1e+300 m away, limit {MAX_COORDINATE:g}; use metres": {"control_points": POINTS + FAR},
+    f"control point 1 is 1e+300 m away, limit {MAX_COORDINATE:g}; use metres": {"control_points": POINTS + FAR_CURVE},
     "a path has 3 (x, y, z)": {"control_points": POINTS[:, :2]},
     "all control points lie in one place": {"control_points": np.zeros((6, 3))},
     "outside 1 to 7": {"degree": 9},
 }
 
 
-@pytest.mark.parametrize("sentence", BAD)
+@pytest.mark.parametrize("sentence", INVALID_CURVES)
 def test_what_cannot_be_edited_is_refused_in_a_sentence(sentence: str) -> None:
     with pytest.raises(UnusableInput) as caught:
-        check_editable(changed(**BAD[sentence]))
+        check_editable(changed(**INVALID_CURVES[sentence]))
     assert sentence in str(caught.value)
 
 

@@ -8,7 +8,7 @@ import pytest
 from teachpath.periodic_thread import PeriodicThread
 from tests.waiting import HANG
 
-LONG = 3600.0  # [s] longer than any test
+LONG_PERIOD = 3600.0  # [s] longer than any test
 
 
 def test_it_calls_until_it_is_stopped_and_can_be_started_again() -> None:
@@ -28,7 +28,7 @@ def test_it_calls_until_it_is_stopped_and_can_be_started_again() -> None:
 
 def test_it_pauses_before_the_first_call_and_a_stop_cuts_the_pause_short() -> None:
     calls: list[int] = []
-    thread = PeriodicThread("test", LONG, lambda: calls.append(1))
+    thread = PeriodicThread("test", LONG_PERIOD, lambda: calls.append(1))
     thread.start()
     thread.stop()
     assert calls == []

@@ -13,7 +13,7 @@ from teachpath.io.store.store import Store
 from teachpath.motion.arm.model import Arm
 from teachpath.stored_arm import with_stored_arm
 
-HIGH = ((0.0, 0.0, 0.5), (1.0, 0.0, 0.0, 0.0))
+HIGH_PLACE = ((0.0, 0.0, 0.5), (1.0, 0.0, 0.0, 0.0))
 
 
 def settings(**motion: Any) -> Settings:
@@ -22,7 +22,7 @@ def settings(**motion: Any) -> Settings:
 
 def test_the_newest_version_is_the_arm_of_the_station_and_of_the_processes_beside_it(store: Store) -> None:
     store.arms.add(read_arm("six-axis", name="light"), "six_axis.urdf")
-    newest = store.arms.add(read_arm("six-axis", name="light", base=HIGH, gripper_length=0.13), "six_axis.urdf")
+    newest = store.arms.add(read_arm("six-axis", name="light", base=HIGH_PLACE, gripper_length=0.13), "six_axis.urdf")
     found = with_stored_arm(settings(tool_speed=0.25), store.arms)
     assert found.arm.identity == f"light ({newest.hash[:12]})"
     assert found.arm.has_gripper

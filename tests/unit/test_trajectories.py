@@ -12,7 +12,7 @@ from teachpath.trajectories import DEFAULT_DT, to_trajectories, to_trajectory
 N = 20
 RAMP = np.linspace(0.0, 1.0, N)
 POINTS = np.column_stack([0.5 + 0.1 * RAMP, 0.3 * RAMP, 0.6 + 0.0 * RAMP])
-TURNED = np.column_stack([np.cos(RAMP), np.sin(RAMP), 0.0 * RAMP, 0.0 * RAMP])
+TURNED_QUATERNIONS = np.column_stack([np.cos(RAMP), np.sin(RAMP), 0.0 * RAMP, 0.0 * RAMP])
 
 
 class Column:
@@ -63,25 +63,25 @@ def test_whatever_holds_the_positions_gives_them(given: Any) -> None:
 @pytest.mark.parametrize(
     "given",
     [
-        np.column_stack([POINTS, TURNED]),
-        table(**dict(zip(("qw", "qx", "qy", "qz"), TURNED.T, strict=True))),
-        Trajectory(np.arange(N) * DEFAULT_DT, POINTS, TURNED),
+        np.column_stack([POINTS, TURNED_QUATERNIONS]),
+        table(**dict(zip(("qw", "qx", "qy", "qz"), TURNED_QUATERNIONS.T, strict=True))),
+        Trajectory(np.arange(N) * DEFAULT_DT, POINTS, TURNED_QUATERNIONS),
     ],
     ids=["array", "table", "trajectory"],
 )
 def test_orientations_come_with_them(given: Any) -> None:
     orientations = to_trajectory(given).orientations
     assert orientations is not None
-    np.testing.assert_allclose(orientations, TURNED, atol=1e-9)
+    np.testing.assert_allclose(orientations, TURNED_QUATERNIONS, atol=1e-9)
 
 
 def test_neighbouring_quaternions_lie_on_one_half_of_the_sphere() -> None:
     signs = np.where(np.arange(N) % 3, 1.0, -1.0)[:, None]
-    orientations = to_trajectory(np.column_stack([POINTS, 1.004 * signs * TURNED])).orientations
+    orientations = to_trajectory(np.column_stack([POINTS, 1.004 * signs * TURNED_QUATERNIONS])).orientations
     assert orientations is not None
     assert (np.sum(orientations[1:] * orientations[:-1], axis=1) > 0).all()
     np.testing.assert_allclose(np.linalg.norm(orientations, axis=1), 1.0)
-    np.testing.assert_allclose(orientations, -TURNED, atol=1e-9)  # the first one keeps its sign
+    np.testing.assert_allclose(orientations, -TURNED_QUATERNIONS, atol=1e-9)  # the first one keeps its sign
 
 
 @pytest.mark.parametrize(
@@ -124,8 +124,8 @@ def changed(row: int, column: int, value: float) -> np.ndarray:
             "row 0 of 20 .* is farther than 10 m from the robot; give metres: divide millimetres by 1000",
         ),
         (1e6 * POINTS, {}, "farther than 10 m"),
-        (np.column_stack([POINTS, 2 * TURNED]), {}, "row 0 .* a quaternion that is not of length 1"),
-        (np.column_stack([POINTS, 0 * TURNED]), {}, "a quaternion that is not of length 1"),
+        (np.column_stack([POINTS, 2 * TURNED_QUATERNIONS]), {}, "row 0 .* a quaternion that is not of length 1"),
+        (np.column_stack([POINTS, 0 * TURNED_QUATERNIONS]), {}, "a quaternion that is not of length 1"),
         (POINTS, {"dt": 0.0}, "dt is 0 s; it is greater than 0"),
         (POINTS, {"dt": np.nan}, "dt is nan s"),
         (POINTS, {"dt": 0.1, "times": RAMP}, "has times, and dt = 0.1 s is given too"),

@@ -9,7 +9,7 @@ import { formatLength, formatNumber } from "../texts.js";
 import { trimKey } from "../trajectory_cache.js";
 import { compareMotions, overShare, trimmedSamples } from "./demonstration_comparison.js";
 
-const ABOUT =
+const CLOSEUP_HELP =
   "Say the number of a demonstration, to trim it; and that of another one, to see both over time. Nothing of the recording is lost.";
 const MAX_POINTS = 2000; // points of a motion that are read
 const [AXIS_HEIGHT, DISTANCE_HEIGHT] = [84, 110]; // [px]
@@ -68,7 +68,7 @@ class Closeup {
     this.facts = element("p", { class: "note", role: "status" });
     this.legend = element("p", { class: "note legend" });
     place.append(
-      hint(ABOUT),
+      hint(CLOSEUP_HELP),
       choice,
       this.fault,
       this.plot,

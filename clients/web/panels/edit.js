@@ -14,7 +14,7 @@ import { patchChildren } from "../patch_children.js";
 import { changesAny, selectedPath } from "../store.js";
 import { wayClass } from "../way_colors.js";
 
-const NOTHING =
+const NO_PATH_SENTENCE =
   "Nothing to edit yet. Learn the ways of a task first; each has a path, whose control points can be dragged here.";
 
 const VERDICTS = {
@@ -87,7 +87,7 @@ class EditPanel {
     hideSection(this.empty, Boolean(path));
     this.sections.hidden = !path;
     if (!path || !run) {
-      patchChildren(this.empty, hint(NOTHING), tabButton("ways", "Go to the ways"));
+      patchChildren(this.empty, hint(NO_PATH_SENTENCE), tabButton("ways", "Go to the ways"));
       if (this.editor.draft) this.editor.close();
       return;
     }

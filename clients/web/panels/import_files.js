@@ -12,7 +12,7 @@ import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
 import { capitalize } from "../texts.js";
 
-const ABOUT =
+const IMPORT_HELP =
   "Recordings of other programs: tables, motion capture, poses, arrays, or files that were saved here. Drop them on the page, or choose them.";
 const FIRST_TASK = "imported";
 const LINES = { motion: "import-motion", carried: "import-carried" };
@@ -232,7 +232,7 @@ class ImportPanel {
       return element(
         "div",
         { class: "drop", "data-key": "drop" },
-        hint(ABOUT),
+        hint(IMPORT_HELP),
         element("p", { class: "buttons" }, button("choose", "Choose files")),
       );
     const context = { isOnly: files.length === 1, readers: this.readers };

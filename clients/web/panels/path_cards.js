@@ -14,7 +14,7 @@ const ABOUT_CARDS =
   "One card for each way that was shown. Choose one and certify it: that proves that the arm can follow, and lets you run it.";
 const ABOUT_LEARNING =
   "Learning finds the different ways, keeps the demonstrations that agree, and fits a smooth path to each way.";
-const NOTHING =
+const NO_PATHS_SENTENCE =
   "Nothing to learn from yet. Show the task a few times first, each way at least three times; then learn it here, or with:";
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
@@ -55,7 +55,11 @@ function content(state, readOnly) {
   if (!run?.learned.clusters.length) {
     if (runs === null && task) return hint("The runs cannot be read yet: the service does not answer.");
     if (!usable.length) {
-      return [hint(NOTHING), codeBlock(`teachpath learn ${task || "TASK"}`), tabButton("demonstrate", "Show the task")];
+      return [
+        hint(NO_PATHS_SENTENCE),
+        codeBlock(`teachpath learn ${task || "TASK"}`),
+        tabButton("demonstrate", "Show the task"),
+      ];
     }
     const count = `${usable.length} ${pluralize(usable.length, "demonstration")} can be learned from.`;
     return [hint(`${count} ${ABOUT_LEARNING}`), learnButton(state, "Learn the ways")];

@@ -10,7 +10,7 @@ import { changesAny, selectedPath } from "../store.js";
 import { formatLength, formatNumber, formatPercent } from "../texts.js";
 import { programMenu } from "./program_menu.js";
 
-const NOTHING =
+const NO_PLAN_SENTENCE =
   "Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move.";
 
 /** @param {HTMLElement} place @param {Context} context */
@@ -139,7 +139,7 @@ class PlanPreview {
       this.facts,
       path
         ? content(path, plan, job, newer, this.context.readOnly)
-        : [hint(NOTHING), tabButton("ways", "Go to the ways")],
+        : [hint(NO_PLAN_SENTENCE), tabButton("ways", "Go to the ways")],
     );
     const wanted = path !== null && (plan === null || newer > 0) && !working && !this.context.readOnly;
     this.planButton.hidden = !wanted;

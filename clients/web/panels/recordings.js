@@ -18,7 +18,7 @@ const PHASE_LABELS = {
   return: "going back",
 };
 const SERVICE_AWAY_SENTENCE = "Not known: the service does not answer. What was recorded until then is kept.";
-const NOTHING =
+const NO_RECORDING_SENTENCE =
   "No tracker is here. Start one beside the hand, and it appears within a second; or show the task with the mouse, above.";
 
 /** @param {HTMLElement} place @param {Context} context @returns {Section} */
@@ -47,7 +47,7 @@ function content({ connection, recordings, trackers, station, task, tasks }) {
     ),
     ...(station?.notes ?? []).map((note) => element("p", { class: "job note" }, capitalize(note))),
   ];
-  return rows.length ? rows : hint(NOTHING);
+  return rows.length ? rows : hint(NO_RECORDING_SENTENCE);
 }
 
 /** @param {ActiveRecording} recording @param {string} task that is chosen @param {string} title of the task that is recorded */

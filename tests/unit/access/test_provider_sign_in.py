@@ -26,15 +26,15 @@ from tests.identity_provider import CLIENT, SECRET, EmulatedProvider, new_key, r
 
 NS = 10**9
 PAGE = "https://robot.example/"
-HERE = "127.0.0.1"
-NOW = 10**9  # [s]
+CLIENT_ADDRESS = "127.0.0.1"
+NOW_NS = 10**9  # [s]
 
 
 class Lab:
     """A station whose people sign in at a provider, and its clock."""
 
     def __init__(self, provider: EmulatedProvider, settings: OidcSettings) -> None:
-        self.now, self.provider, self.people = float(NOW), provider, MemoryPeople()
+        self.now, self.provider, self.people = float(NOW_NS), provider, MemoryPeople()
         provider.now = lambda: self.now
         self.access = Access(
             AuthSettings("oidc", session_idle=600.0),
@@ -49,7 +49,7 @@ class Lab:
 
     def visited(self) -> tuple[Answer, str]:
         """Begin, let the browser go to the provider, and return what it comes back with, and its secret."""
-        address, secret = self.sign_ins.begin(PAGE, HERE)
+        address, secret = self.sign_ins.begin(PAGE, CLIENT_ADDRESS)
         with httpx.Client(verify=False) as browser:
             place = browser.get(address).headers["location"]
         found = dict(parse_qsl(urlsplit(place).query))
@@ -127,7 +127,7 @@ def test_people_with_passwords_and_those_of_another_provider_have_no_session_her
     with pytest.raises(NotSignedIn):
         passwords.subject([], secret)
     with pytest.raises(NotSignedIn):
-        passwords.sessions.sign_in("anna", "", HERE)
+        passwords.sessions.sign_in("anna", "", CLIENT_ADDRESS)
     assert lab.access.subject([], secret).name == "anna"
     assert len(lab.people.sessions()) == 1  # of another station on the same database
 
@@ -179,11 +179,11 @@ def by_its_own_key(claims: dict[str, Any]) -> str:
         ({"azp": "another program"}, "made for another program"),
         ({"iss": "https://elsewhere.example"}, "iss"),
         ({"iss": None}, "iss"),
-        ({"exp": NOW - 60}, "expired"),
+        ({"exp": NOW_NS - 60}, "expired"),
         ({"exp": None}, "exp"),
         ({"exp": "tomorrow"}, "exp"),
-        ({"iat": NOW + 61}, "in the future"),
-        ({"nbf": NOW + 61}, "not yet valid"),
+        ({"iat": NOW_NS + 61}, "in the future"),
+        ({"nbf": NOW_NS + 61}, "not yet valid"),
         ({"sub": None}, "sub"),
         ({"sub": ""}, "sub"),
         ({"sub": 7}, "sub"),
@@ -250,9 +250,9 @@ def test_sign_ins_that_nobody_finishes_are_limited(lab: Lab) -> None:
     lab.sign_in()
     lab.sign_in()
     for _ in range(MAX_FROM_ADDRESS):
-        lab.sign_ins.begin(PAGE, HERE)
+        lab.sign_ins.begin(PAGE, CLIENT_ADDRESS)
     with pytest.raises(TooManyAttempts, match="try again in"):
-        lab.sign_ins.begin(PAGE, HERE)
+        lab.sign_ins.begin(PAGE, CLIENT_ADDRESS)
     assert lab.sign_ins.begin(PAGE, "10.0.0.7")
 
 

@@ -13,8 +13,8 @@ from teachpath.records import Capability, Person
 
 NS = 10**9
 PASSWORD = "four words put together"
-KEPT = hash_password(PASSWORD, "anna")  # it takes time by intention: once for all tests
-HERE = "127.0.0.1"
+STORED_HASH = hash_password(PASSWORD, "anna")  # it takes time by intention: once for all tests
+CLIENT_ADDRESS = "127.0.0.1"
 
 
 class Station:
@@ -23,13 +23,13 @@ class Station:
     def __init__(self) -> None:
         self.now = 10**18
         self.people = MemoryPeople()
-        self.people.put(Person("anna", (Capability.TEACH,), KEPT, self.now, self.now))
+        self.people.put(Person("anna", (Capability.TEACH,), STORED_HASH, self.now, self.now))
         settings = AuthSettings("token", session_idle=600.0, session_length=3600.0)
         self.access = Access(settings, MemoryTokens(), self.people, lambda: self.now)
         self.access.refresh()
 
     def sign_in(self) -> str:
-        secret, subject = self.access.sessions.sign_in("anna", PASSWORD, HERE)
+        secret, subject = self.access.sessions.sign_in("anna", PASSWORD, CLIENT_ADDRESS)
         assert (subject.name, Capability.TEACH in subject.capabilities) == ("anna", True)
         return secret
 
@@ -88,7 +88,7 @@ def test_what_was_opened_ends_with_the_session(station: Station, how: str) -> No
     elif how == "removed":
         station.people.remove("anna")
     else:
-        station.people.put(Person("anna", (Capability.TEACH,), KEPT, 0, station.now))
+        station.people.put(Person("anna", (Capability.TEACH,), STORED_HASH, 0, station.now))
     station.access.refresh()
     assert ended == [how]
     with pytest.raises(NotSignedIn):
@@ -99,7 +99,7 @@ def test_a_wrong_name_and_a_wrong_password_are_answered_alike(station: Station) 
     sentences = set()
     for name, password in (("anna", "wrong"), ("nobody", PASSWORD), ("", ""), ("anna", ""), ("Anna", PASSWORD)):
         with pytest.raises(NotSignedIn) as found:
-            station.access.sessions.sign_in(name, password, HERE)
+            station.access.sessions.sign_in(name, password, CLIENT_ADDRESS)
         sentences.add(str(found.value))
     assert len(sentences) == 1
 
@@ -107,7 +107,7 @@ def test_a_wrong_name_and_a_wrong_password_are_answered_alike(station: Station) 
 def test_nobodys_password_is_as_much_work_as_anybodys() -> None:
     from teachpath.access import passwords
 
-    parameters = [kept.rpartition("$")[0].rpartition("$")[0] for kept in (KEPT, passwords._NOBODYS_HASH)]
+    parameters = [kept.rpartition("$")[0].rpartition("$")[0] for kept in (STORED_HASH, passwords._NOBODYS_HASH)]
     assert parameters[0] == parameters[1]
     assert not is_password(PASSWORD, None)
 

@@ -12,14 +12,14 @@ from httpx import Response as Answer
 
 from teachpath.api.compressed_documents import LEAST_COMPRESSED, CompressedDocuments
 
-LONG = [{"number": k} for k in range(LEAST_COMPRESSED)]
+LONG_DOCUMENT = [{"number": k} for k in range(LEAST_COMPRESSED)]
 
 
 def application() -> FastAPI:
     app = FastAPI()
     app.add_middleware(CompressedDocuments)
-    app.add_api_route("/long", lambda: LONG)
-    app.add_api_route("/long", lambda: LONG, methods=["POST"])
+    app.add_api_route("/long", lambda: LONG_DOCUMENT)
+    app.add_api_route("/long", lambda: LONG_DOCUMENT, methods=["POST"])
     app.add_api_route("/short", lambda: [1])
     app.add_api_route("/text", lambda: Response("x" * 5000, media_type="text/plain"))
 

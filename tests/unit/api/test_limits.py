@@ -15,7 +15,7 @@ from teachpath.access.settings import AuthSettings, LimitSettings
 from teachpath.api.limits import LimitSubjects
 
 CONNECTIONS = 20
-KEPT = 2
+KEPT_ENTRIES = 2
 STOPS = ("/api/v1/stop", "/api/v1/executions/e/stop")
 
 
@@ -73,7 +73,7 @@ def test_so_many_requests_of_one_subject_are_under_way(path: str, limits: dict[s
 def test_connections_are_kept_for_stops(mode: str) -> None:
     async def story() -> None:
         app = Waiting(mode)
-        held = await app.hold(CONNECTIONS - KEPT, "/api/v1/tasks")
+        held = await app.hold(CONNECTIONS - KEPT_ENTRIES, "/api/v1/tasks")
         refused = await app.ask("GET", "/api/v1/tasks", "192.168.7.10")
         assert (refused.status_code, refused.headers["retry-after"]) == (503, "1")
         assert "kept for those that stop the arm" in refused.json()["detail"]

@@ -20,12 +20,12 @@ class Guard:
             raise ModuleNotFoundError(f"{{name}} is not in the base install", name=name)
 sys.meta_path.insert(0, Guard())
 """
-EVERYTHING = """
+IMPORT_PROGRAM = """
 import pkgutil, importlib, teachpath_client
 for module in pkgutil.walk_packages(teachpath_client.__path__, "teachpath_client."):
     importlib.import_module(module.name)
 """
-SYNTHETIC = """
+SYNTHETIC_PROGRAM = """
 from teachpath_client.devices import open_source
 with open_source("synthetic", {}) as source:
     print(sum(1 for _ in source))
@@ -78,12 +78,12 @@ def test_the_guard_keeps_the_service_and_its_dependencies_out() -> None:
 
 
 def test_every_module_of_the_client_is_imported() -> None:
-    ended = run(EVERYTHING)
+    ended = run(IMPORT_PROGRAM)
     assert (ended.returncode, ended.stderr) == (0, "")
 
 
 def test_the_synthetic_source_runs() -> None:
-    ended = run(SYNTHETIC)
+    ended = run(SYNTHETIC_PROGRAM)
     assert ended.returncode == 0, ended.stderr
     assert int(ended.stdout) > 4000
 
@@ -95,7 +95,7 @@ def test_the_command_line_helps() -> None:
         assert command in ended.stdout
 
 
-@pytest.mark.parametrize("code", [WITHOUT_EMULATORS, SYNTHETIC, HELP, EVENT_PEDAL])
+@pytest.mark.parametrize("code", [WITHOUT_EMULATORS, SYNTHETIC_PROGRAM, HELP, EVENT_PEDAL])
 def test_the_client_needs_no_module_that_windows_lacks(code: str) -> None:
     ended = run(WINDOWS + code)
     assert (ended.returncode, ended.stderr) == (0, "")

@@ -14,7 +14,7 @@ START = np.zeros(6)
 GOAL = np.array([0.8, -0.6, 0.9, 1.0, -1.0, 1.2])
 SECONDS = 1.2
 BRAKING = 0.3  # s, that the way to rest takes
-NOW = 1_000 * 10**9  # ns, when the first setpoint is due
+NOW_NS = 1_000 * 10**9  # ns, when the first setpoint is due
 
 Arrival = Callable[[int], float]  # of a cycle [s]
 
@@ -67,7 +67,7 @@ def way_to_rest(t: float) -> np.ndarray:
 def setpoint(k: int, *, start: float = 0.0, **changes: object) -> Setpoint:
     """The setpoint of a control period; `start` is the plan time [s] of the first."""
     t = start + k * PERIOD
-    given = {"nominal_ns": NOW + round(1e9 * k * PERIOD), "way_to_rest": way_to_rest(t)} | changes
+    given = {"nominal_ns": NOW_NS + round(1e9 * k * PERIOD), "way_to_rest": way_to_rest(t)} | changes
     return Setpoint(k, given.pop("nominal_ns"), *motion(t), **given)  # type: ignore[arg-type]
 
 
@@ -83,7 +83,7 @@ def played(
     player = player or SetpointPlayer(START, delay=DELAY)
     log = []
     for ms in range(int(1e3 * seconds)):
-        now = NOW + ms * 10**6
+        now = NOW_NS + ms * 10**6
         while coming and coming[0][0] <= ms / 1e3:
             player.add(STREAM[coming.pop(0)[1]], now)
         player.advance(0.001, now)
@@ -137,8 +137,8 @@ def test_what_comes_late_doubled_or_is_missing_within_the_delay_changes_nothing(
     assert (player.missed, player.late, player.stops) == (5, 0, 0)
     doubled = SetpointPlayer(START, delay=DELAY)
     for k in range(20):
-        assert doubled.add(STREAM[k], NOW)
-        assert not doubled.add(STREAM[k], NOW)
+        assert doubled.add(STREAM[k], NOW_NS)
+        assert not doubled.add(STREAM[k], NOW_NS)
 
 
 @pytest.mark.parametrize("pause", [0.04, 0.06, 0.1, 0.5, 1e6])
@@ -165,7 +165,7 @@ def test_a_burst_of_overdue_setpoints_moves_nothing_and_is_late() -> None:
 def test_it_takes_up_again_what_begins_at_rest_where_the_arm_rests_and_nothing_else() -> None:
     player, before = played(lambda k: in_time(k) if k < 100 else 1e6, seconds=1.0)
     rest = player.target.position
-    now = NOW + 10**9
+    now = NOW_NS + 10**9
     moving = Setpoint(600, now, rest, np.ones(6), START)
     elsewhere = Setpoint(601, now, rest + 0.003, START, START)
     assert not player.add(moving, now)
@@ -217,7 +217,7 @@ def test_a_way_to_rest_whose_jerk_changes_from_period_to_period_is_read_as_it_wa
         rows.append(state)
         state = np.array([p + h * (v + h * (a / 2 + h * jerk / 6)), v + h * (a + h * jerk / 2), a + h * jerk])
     backwards = np.array([*rows, state])[::-1] * np.array([[1.0], [-1.0], [1.0]])
-    way = WayToRest(Setpoint(0, NOW, *backwards[0], way_to_rest=backwards[fine::fine]), PERIOD)
+    way = WayToRest(Setpoint(0, NOW_NS, *backwards[0], way_to_rest=backwards[fine::fine]), PERIOD)
     for k, (position, velocity, _) in enumerate(backwards):
         read = way(k * h)
         np.testing.assert_allclose(read[0], position, atol=1e-10)
@@ -228,9 +228,9 @@ def test_a_setpoint_that_moves_without_a_way_to_rest_is_braked_straight_ahead() 
     player = SetpointPlayer(START, delay=DELAY)
     bare = [setpoint(k, way_to_rest=np.empty((0, 3, 6))) for k in range(150)]
     for each in bare:
-        player.add(each, NOW)
+        player.add(each, NOW_NS)
     for ms in range(1000):
-        player.advance(0.001, NOW + ms * 10**6)
+        player.advance(0.001, NOW_NS + ms * 10**6)
     assert player.state is PlayerState.STOPPED
     ahead = player.target.position - bare[-1].position
     assert np.all(ahead * bare[-1].velocity >= 0)
@@ -241,7 +241,7 @@ def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
     player = SetpointPlayer(START, delay=DELAY)
     log, behind = [], 0
     for ms in range(4000):
-        now = NOW + ms * 10**6
+        now = NOW_NS + ms * 10**6
         if ms % 4 == 0:
             player.add(setpoint(ms // 4, gripper_closed=ms > 2900), now)
         if ms % 2:  # its machine has time for half of what is to be done
@@ -260,7 +260,7 @@ def test_who_is_behind_catches_up_at_a_standstill_without_a_jump() -> None:
 
 def test_another_execution_begins_from_where_the_arm_is_or_not_at_all() -> None:
     player, log = played(in_time)
-    now = NOW + 10 * 10**9
+    now = NOW_NS + 10 * 10**9
     far = Setpoint(0, now, GOAL + 0.1, START, START, execution="far")
     moving = Setpoint(0, now, GOAL, np.ones(6), START, execution="moving")
     assert not player.add(far, now)
@@ -276,12 +276,12 @@ def test_another_execution_begins_from_where_the_arm_is_or_not_at_all() -> None:
 
 def test_nothing_moves_before_the_first_setpoint() -> None:
     player = SetpointPlayer(GOAL, delay=DELAY)
-    assert player.advance(0.001, NOW) is None
+    assert player.advance(0.001, NOW_NS) is None
     np.testing.assert_array_equal(player.target.position, GOAL)
     assert (player.state, player.execution, player.at_rest) == (PlayerState.IDLE, "", True)
 
 
 def test_a_setpoint_for_another_arm_is_left_out() -> None:
     player, others = SetpointPlayer(START, delay=DELAY), np.zeros(7)
-    assert not player.add(Setpoint(0, NOW, others, others, others), NOW)
-    assert player.add(Setpoint(0, NOW, START, START, START), NOW)
+    assert not player.add(Setpoint(0, NOW_NS, others, others, others), NOW_NS)
+    assert player.add(Setpoint(0, NOW_NS, START, START, START), NOW_NS)

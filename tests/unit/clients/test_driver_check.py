@@ -12,7 +12,7 @@ from teachpath_client.verdict import Verdict
 from teachpath_proto.motion_pb2 import JointState, Setpoint
 
 HOME = np.array([0.365, 1.663, -3.177, 0.0, -1.628, 0.365])  # [rad]
-NOW = 1_700_000_000 * 10**9
+NOW_NS = 1_700_000_000 * 10**9
 STEP_NS = 1_000_000
 RULES = 9
 
@@ -130,7 +130,7 @@ class VirtualBench:
 
     def __init__(self, driver: "PlayerDriver | NaiveDriver") -> None:
         self.states: list[JointState] = []
-        self._driver, self._now = driver, NOW
+        self._driver, self._now = driver, NOW_NS
 
     def now_ns(self) -> int:
         return self._now
@@ -199,7 +199,7 @@ def test_an_arm_that_is_not_fit_is_not_moved() -> None:
 def test_the_ways_to_rest_of_the_move_lie_on_its_line_and_end_at_rest() -> None:
     move = Move("e", HOME, HOME + np.array([0.2, -0.2, 0.1, 0.0, 0.2, 0.2]))
     for index in range(COUNT):
-        setpoint = decode_setpoint(move.setpoint(index, NOW).SerializeToString())
+        setpoint = decode_setpoint(move.setpoint(index, NOW_NS).SerializeToString())
         rows = np.vstack([setpoint.position, setpoint.way_to_rest[:, 0]])
         off = np.linalg.norm(np.cross(rows[:, :3] - HOME[:3], (move.end - HOME)[:3]), axis=1)
         assert off.max() < 1e-12

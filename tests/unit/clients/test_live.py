@@ -21,8 +21,8 @@ from teachpath_proto import tracker_pb2
 from tests.unit.clients.devices.readings import calibration, readings
 from tests.unit.clients.test_tracker import MemoryLink
 
-OPENED = HandReading(0.0, (0.0, 0.0, 0.0), None, (0.0,) * 22)
-CLOSED = HandReading(0.0, (0.0, 0.0, 0.0), None, (1.0,) * 22)
+OPEN_READING = HandReading(0.0, (0.0, 0.0, 0.0), None, (0.0,) * 22)
+CLOSED_READING = HandReading(0.0, (0.0, 0.0, 0.0), None, (1.0,) * 22)
 
 
 class Touched(PlaybackSource):
@@ -111,15 +111,15 @@ def test_the_vibration_ends_when_the_station_is_gone() -> None:
 
 def test_a_glove_is_calibrated_by_an_open_hand_and_a_fist(tmp_path: Path) -> None:
     with glove(tmp_path) as emulator:
-        hands = iter([OPENED, CLOSED])
+        hands = iter([OPEN_READING, CLOSED_READING])
 
         def tell(_sentence: str) -> None:
             emulator.show(next(hands))
 
         made = calibrate_glove(GloveSettings(str(tmp_path / "glove")), tell)
     true = calibration()
-    assert made.offset == tuple(map(float, true.raw(OPENED.flexions)))
-    assert made.flexions(true.raw(CLOSED.flexions)) == pytest.approx((1.0,) * 22)
+    assert made.offset == tuple(map(float, true.raw(OPEN_READING.flexions)))
+    assert made.flexions(true.raw(CLOSED_READING.flexions)) == pytest.approx((1.0,) * 22)
     assert made.gain[-1] == 0.0
 
 

@@ -13,9 +13,9 @@ from teachpath_client.reading import HandReading
 from teachpath_client.tracker_check.rules import Observation, Received, verdicts
 from teachpath_proto.tracker_pb2 import HandSample, StartRecording, StopRecording
 
-NOW = 1_800_000_000 * 10**9
+NOW_NS = 1_800_000_000 * 10**9
 PERIOD = 0.02  # [s]
-COUNT, CLOSED = 150, range(25, 125)
+COUNT, CLOSED_SAMPLES = 150, range(25, 125)
 
 # of the rules, by what their sentences begin with
 NAME, SAMPLES, NUMBERS, CONGESTION, CLOCK, GRASP, RATE, LIVELINESS, HANDSHAKE = (
@@ -32,12 +32,12 @@ def sound() -> Observation:
             i * PERIOD,
             (0.5, -0.2 + 0.004 * i, 0.5),
             (1.0, 0.0, 0.0, 0.0),
-            (0.9 if i in CLOSED else 0.1,) * 22,
+            (0.9 if i in CLOSED_SAMPLES else 0.1,) * 22,
         )
         for i in range(COUNT)
     )
-    payloads = [reading.message(7 + i, NOW).SerializeToString() for i, reading in enumerate(readings)]
-    received = [Received("mine", p, NOW + round(1e9 * PERIOD * i)) for i, p in enumerate(payloads)]
+    payloads = [reading.message(7 + i, NOW_NS).SerializeToString() for i, reading in enumerate(readings)]
+    received = [Received("mine", p, NOW_NS + round(1e9 * PERIOD * i)) for i, p in enumerate(payloads)]
     return Observation(
         received,
         {"mine"},
@@ -128,11 +128,11 @@ def in_microseconds(sample: HandSample, _: int) -> None:
 
 
 def from_the_start(sample: HandSample, _: int) -> None:
-    sample.device_ns -= NOW - 1
+    sample.device_ns -= NOW_NS - 1
 
 
 def stand_still(sample: HandSample, place: int) -> None:
-    sample.device_ns = NOW + min(place, 60) * round(1e9 * PERIOD)
+    sample.device_ns = NOW_NS + min(place, 60) * round(1e9 * PERIOD)
 
 
 def never_close(sample: HandSample, _: int) -> None:
@@ -208,7 +208,7 @@ def test_samples_that_a_stall_delays_wherever_it_falls_say_nothing_of_the_clock(
 def test_a_clock_that_runs_too_fast_or_too_slowly_is_noticed_beside_a_stall(rate: float) -> None:
     for begin in range(0, COUNT, 50):
         seen = sound()
-        changed(lambda sample, place: setattr(sample, "device_ns", NOW + round(1e9 * rate * PERIOD * place)))(seen)
+        changed(lambda sample, place: setattr(sample, "device_ns", NOW_NS + round(1e9 * rate * PERIOD * place)))(seen)
         over = seen.received[begin].receive_ns + round(0.5e9)
         seen.received = [
             replace(one, receive_ns=max(one.receive_ns, over) if place >= begin else one.receive_ns)
@@ -232,17 +232,17 @@ def test_the_check_refuses_what_the_recorder_refuses() -> None:
         for field in random.choice(["position.x", "orientation.w", "orientation.z", "device_ns", "flexions"], 2):
             value = float(random.choice(values))
             if field == "device_ns":
-                sample.device_ns = int(random.choice([0, -5, NOW]))
+                sample.device_ns = int(random.choice([0, -5, NOW_NS]))
             elif field == "flexions":
                 sample.flexions[:] = [value] * int(random.choice([0, 3, 18, 22]))
             else:
                 owner, name = field.split(".")
                 setattr(getattr(sample, owner), name, value)
         payload = sample.SerializeToString()
-        seen = Observation([Received("mine", payload, NOW)])
+        seen = Observation([Received("mine", payload, NOW_NS)])
         refused = any(rule.startswith(SAMPLES) for rule in broken(seen))
         try:
-            decode_sample("mine", payload, NOW)
+            decode_sample("mine", payload, NOW_NS)
             assert not refused
         except UnusableSample:
             assert refused

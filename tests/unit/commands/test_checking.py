@@ -21,7 +21,7 @@ from teachpath.records import Plan, Setpoint
 from tests.unit.executor.executors import EPOCH, KEY
 from tests.unit.motion.ways import MIDDLE, way
 
-SLOW = MotionSettings(variant="corke-1996", tool_speed=0.25)
+SLOW_SETTINGS = MotionSettings(variant="corke-1996", tool_speed=0.25)
 
 
 def judged(file: Path, config: Path | None = None) -> str:
@@ -33,7 +33,7 @@ def judged(file: Path, config: Path | None = None) -> str:
 @pytest.fixture(scope="module")
 def slow() -> Plan:
     """A plan for another arm than the default one, with a limit of its speed."""
-    return plan(way(MIDDLE), paper_scene(), SLOW)
+    return plan(way(MIDDLE), paper_scene(), SLOW_SETTINGS)
 
 
 def setpoints(made: Plan) -> np.ndarray:
@@ -66,7 +66,7 @@ def recorded(folder: Path, signed: Plan, parts: list[np.ndarray], *, from_rest: 
 
 @pytest.fixture(scope="module")
 def signed(slow: Plan) -> Plan:
-    return sign_plan(slow, Arm.of_settings(SLOW), SLOW, KEY, issued_ns=EPOCH)
+    return sign_plan(slow, Arm.of_settings(SLOW_SETTINGS), SLOW_SETTINGS, KEY, issued_ns=EPOCH)
 
 
 def test_a_recording_is_judged_by_the_arm_of_its_plan(tmp_path: Path, signed: Plan) -> None:

@@ -20,7 +20,7 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.records import Job, JobState, Learned, Trajectory
 from tests.unit.learning import synthetic
 
-QUICK = LearningSettings(repeats=0)
+QUICK_SETTINGS = LearningSettings(repeats=0)
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def three_ways() -> dict[str, list[Trajectory]]:
     rng = np.random.default_rng(2)
     return {
         name: [synthetic.demonstration(rng, way) for _ in range(3)]
-        for name, way in zip("abc", synthetic.WAYS, strict=True)
+        for name, way in zip("abc", synthetic.WAY_POINTS, strict=True)
     }
 
 
@@ -103,7 +103,7 @@ def test_mode_paper_asks_for_its_threshold(tmp_path: Path, three_ways: dict[str,
 
 def test_flags_name_who_was_left_out_and_why() -> None:
     demonstrations = {f"g/{k}": d for k, d in synthetic.experiment_2(11).items()}
-    (cluster,) = evaluation(learn(demonstrations, QUICK))["clusters"]
+    (cluster,) = evaluation(learn(demonstrations, QUICK_SETTINGS))["clusters"]
     named = [flag for flag in cluster["flags"] if ": inconsistent in its " in flag]
     assert len(named) == 5 - cluster["selected"]
     assert any(flag.startswith("g/5: inconsistent in its smoothness") for flag in named)
@@ -157,9 +157,9 @@ def stored(folder: Path, *results: Learned) -> list[str]:
 
 def test_diff_says_why_two_stored_runs_differ(tmp_path: Path) -> None:
     demonstrations = synthetic.experiment_2(11)
-    one = learn(demonstrations, QUICK)
+    one = learn(demonstrations, QUICK_SETTINGS)
     fewer = {name: demonstrations[name] for name in "1345"}
-    other = learn(fewer, replace(QUICK, error_bound=0.01))
+    other = learn(fewer, replace(QUICK_SETTINGS, error_bound=0.01))
     runs = stored(tmp_path / "data", one, other)
     printed = called("diff", *runs, "--data", tmp_path / "data")
     assert "demonstration 2 is no longer learned from" in printed

@@ -41,7 +41,7 @@ PERIOD_NS = 4_000_000
 OPENING = 0.08  # [m] between the open fingers of a gripper that measures them
 EPOCH = 1_700_000_000 * 10**9
 KEY = SigningKey(bytes(range(32)))
-STUCK = 60.0  # s, after which a test gives up
+STUCK_TIMEOUT = 60.0  # s, after which a test gives up
 
 
 def signed(plan: Plan, *, key: SigningKey = KEY, issued_ns: int = EPOCH, motion: MotionSettings = MOTION) -> Plan:
@@ -120,7 +120,7 @@ class Bench:
 
     def sleep(self, duration: float) -> None:
         self.now += round(duration * 1e9) + self.oversleep.pop(len(self.setpoints), 0)
-        assert self.now < STUCK * 1e9, f"stuck before step {self.todo[:1]} in {self.statuses[-1]}"
+        assert self.now < STUCK_TIMEOUT * 1e9, f"stuck before step {self.todo[:1]} in {self.statuses[-1]}"
         if self.setpoints:
             self._play()
             self.position = self.taken().position + self.pushed

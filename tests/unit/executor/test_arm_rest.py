@@ -9,7 +9,7 @@ from teachpath.executor.settings import ExecutorSettings
 from teachpath.records import Plan
 from tests.unit.executor.executors import PERIOD_NS, Bench, standing
 
-MOVING = 0.4  # [rad/s]
+MOVING_SPEED = 0.4  # [rad/s]
 TIMEOUT = ExecutorSettings().rest_timeout
 
 
@@ -27,7 +27,7 @@ def is_sent(bench: Bench) -> bool:
 def go_on_moving(bench: Bench, plan: Plan, then: Callable[[], object] = lambda: None) -> None:
     """Start a plan with an arm that still moves when the last setpoint of the motion was sent; then do something."""
     bench.start(plan)
-    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "velocity", MOVING))
+    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "velocity", MOVING_SPEED))
     bench.when(lambda: is_sent(bench), then)
 
 
@@ -70,7 +70,7 @@ def test_an_arm_that_never_rests_is_a_fault_after_a_time(bench: Bench, middle: P
 
 def test_a_stop_of_an_arm_that_never_rests_names_both(bench: Bench, middle: Plan) -> None:
     bench.start(middle)
-    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "velocity", MOVING))
+    bench.when(lambda: bench.state == "following", lambda: setattr(bench, "velocity", MOVING_SPEED))
     bench.when(lambda: True, lambda: bench.command("stop"))
     bench.when(lambda: bench.state == "faulted", bench.stop.set)
     bench.run()

@@ -8,10 +8,10 @@ from teachpath.errors import Conflict
 from teachpath.records import Plan
 from tests.unit.executor.executors import Bench, standing, within_limits
 
-HELD = [({"enabled": False}, "drives are off"), ({"protective_stop": True}, "protective stop")]
+HELD_CASES = [({"enabled": False}, "drives are off"), ({"protective_stop": True}, "protective stop")]
 
 
-@pytest.mark.parametrize(("drives", "reason"), HELD)
+@pytest.mark.parametrize(("drives", "reason"), HELD_CASES)
 def test_an_arm_that_cannot_follow_is_held_until_it_can(middle: Plan, drives: dict[str, Any], reason: str) -> None:
     bench, refused = Bench(), []
 
@@ -47,7 +47,7 @@ def test_a_fault_of_the_arm_ends_the_execution_at_rest(middle: Plan) -> None:
     assert within_limits(bench.setpoints)
 
 
-@pytest.mark.parametrize(("drives", "reason"), [*HELD, ({"fault": "joint 2 is hot"}, "joint 2 is hot")])
+@pytest.mark.parametrize(("drives", "reason"), [*HELD_CASES, ({"fault": "joint 2 is hot"}, "joint 2 is hot")])
 def test_an_arm_that_cannot_follow_is_not_started(middle: Plan, drives: dict[str, Any], reason: str) -> None:
     bench = Bench()
     bench.drives = drives

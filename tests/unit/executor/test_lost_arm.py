@@ -13,7 +13,7 @@ from teachpath.records import JointState, Plan
 from tests.unit.executor.executors import KEYS, Bench, standing, within_limits
 
 CUT = "the executor's own line to the bus is cut, and nothing is heard of the arm: look where the arm stands"
-GONE = "the driver of puma560 has ended: look where the arm stands, then start again"
+LOST_ARM_REASON = "the driver of puma560 has ended: look where the arm stands, then start again"
 
 
 class LosableBench(Bench):
@@ -51,7 +51,7 @@ def test_an_arm_whose_driver_ends_is_a_fault_in_every_state(bench: LosableBench,
     bench.when(lambda: bench.state == state, lose)
     bench.when(lambda: bench.state == "faulted", bench.stop.set)
     bench.run()
-    assert bench.statuses[-1].reason == GONE
+    assert bench.statuses[-1].reason == LOST_ARM_REASON
     assert standing(bench.setpoints)
     assert within_limits(bench.setpoints)
     assert bench.now - times[0] < 1e9
@@ -63,7 +63,7 @@ def test_an_arm_whose_driver_ends_while_it_follows_a_way_to_rest_is_a_fault(benc
     bench.when(lambda: True, bench.lose_driver)
     bench.when(lambda: bench.state == "faulted", bench.stop.set)
     bench.run()
-    assert bench.statuses[-1].reason == GONE
+    assert bench.statuses[-1].reason == LOST_ARM_REASON
 
 
 class CuttableBus(MemoryBus):

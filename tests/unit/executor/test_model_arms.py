@@ -25,7 +25,7 @@ from tests.unit.motion.ways import MIDDLE, clamped, learned, way
 
 BASE = ((0.0, 0.0, 0.5), (1.0, 0.0, 0.0, 0.0))  # at the table's edge, as high as its top
 MAX_ERROR = 3e-4  # [m] of the simulated tool
-SHORT = learned(clamped(np.array([[0.45, -0.1, 0.65], [0.5, -0.05, 0.7], [0.5, 0.05, 0.7], [0.45, 0.1, 0.65]])))
+SHORT_PATH = learned(clamped(np.array([[0.45, -0.1, 0.65], [0.5, -0.05, 0.7], [0.5, 0.05, 0.7], [0.45, 0.1, 0.65]])))
 
 
 def light(gripper_length: float = 0.0, example: str = "six-axis") -> tuple[Arm, MotionSettings]:
@@ -71,10 +71,10 @@ def test_it_carries_an_object_with_the_gripper_on_its_flange(carrying: Plan) -> 
 @pytest.mark.parametrize("example", ["six-axis", "seven-axis"])
 def test_without_a_gripper_its_tool_follows_the_path(example: str) -> None:
     arm, motion = light(example=example)
-    moved = planned(SHORT, empty_scene(), arm, motion)
+    moved = planned(SHORT_PATH, empty_scene(), arm, motion)
     bench = MovedBench(moved, motion=motion, arm=arm)
     bench.run_whole(moved)
-    check_motion(bench, arm, SHORT)
+    check_motion(bench, arm, SHORT_PATH)
 
 
 def test_the_driver_of_an_arm_with_other_joints_is_not_heard(caplog: pytest.LogCaptureFixture) -> None:

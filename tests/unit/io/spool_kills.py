@@ -24,9 +24,9 @@ from teachpath.offline.doctor import examine
 from tests.object_storage import BUCKET
 from tests.unit.io.spools import upload
 from tests.unit.offline.damage import SETTINGS, TASK, make_station
-from tests.unit.offline.doctor_kills import KILLED, in_child
+from tests.unit.offline.doctor_kills import KILLED_STATUS, in_child
 
-WATCHED = ("open", "os.remove")
+WATCHED_CALLS = ("open", "os.remove")
 
 
 def of(data: Path, url: str) -> StoreSettings:
@@ -38,9 +38,9 @@ def upload_and_die(data: Path, url: str, die_at: int) -> None:
 
     def note(*_: object, **__: object) -> None:
         if next(seen) == die_at:
-            os._exit(KILLED)
+            os._exit(KILLED_STATUS)
 
-    sys.addaudithook(lambda name, _: note() if name in WATCHED else None)
+    sys.addaudithook(lambda name, _: note() if name in WATCHED_CALLS else None)
     event.listen(Engine, "before_cursor_execute", note)
     event.listen(Engine, "commit", note)
     upload(of(data, url))
@@ -79,7 +79,7 @@ def main(root: Path) -> dict[str, object]:
         os.close(reading)
         if found or checked:
             wrong[number] = found
-        if code != KILLED:
+        if code != KILLED_STATUS:
             return {"killed": number - 1, "wrong": wrong}
     raise AssertionError
 

@@ -10,7 +10,7 @@ from teachpath.io.curve_dxf import curve_dxf
 from teachpath.io.curve_iges import curve_iges
 from teachpath.nurbs import Curve
 
-AT = np.linspace(0.0, 1.0, 501)
+PARAMETERS = np.linspace(0.0, 1.0, 501)
 
 
 def a_curve(degree: int, count: int, *, rational: bool = True) -> Curve:
@@ -35,9 +35,9 @@ def test_dxf_holds_the_curve(curve: Curve) -> None:
         np.testing.assert_array_equal(list(read), own)
     np.testing.assert_array_equal(np.array(list(spline.control_points)), curve.control_points)
     stored = Curve(spline.dxf.degree, list(spline.knots), np.array(list(spline.control_points)), list(spline.weights))
-    np.testing.assert_allclose(stored(AT), curve(AT), rtol=0, atol=1e-9)
-    drawn = np.array([tuple(point) for point in spline.construction_tool().points(AT.tolist())])
-    np.testing.assert_allclose(drawn, curve(AT), rtol=0, atol=1e-7)  # ezdxf draws with knots of ten digits
+    np.testing.assert_allclose(stored(PARAMETERS), curve(PARAMETERS), rtol=0, atol=1e-9)
+    drawn = np.array([tuple(point) for point in spline.construction_tool().points(PARAMETERS.tolist())])
+    np.testing.assert_allclose(drawn, curve(PARAMETERS), rtol=0, atol=1e-7)  # ezdxf draws with knots of ten digits
 
 
 @pytest.mark.parametrize("curve", CURVES, ids=lambda curve: f"degree {curve.degree}")
@@ -46,7 +46,7 @@ def test_iges_holds_the_curve(curve: Curve) -> None:
     np.testing.assert_array_equal(again.knots, curve.knots)
     np.testing.assert_array_equal(again.weights, curve.weights)
     np.testing.assert_array_equal(again.control_points, curve.control_points)
-    np.testing.assert_allclose(again(AT), curve(AT), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(again(PARAMETERS), curve(PARAMETERS), rtol=0, atol=1e-9)
 
 
 def read_iges(content: str) -> Curve:

@@ -11,11 +11,11 @@ from teachpath.io.meshes import read_mesh
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 2.0) for y in (0.0, 3.0) for z in (0.0, 4.0)])
 TRIANGLES = [[0, 1, 2], [1, 3, 2], [4, 6, 5], [5, 6, 7], [0, 4, 1], [1, 4, 5], [2, 3, 6], [3, 7, 6]]
-INSIDE = [1.0, 1.5, 2.0]
+INNER_SIZES = [1.0, 1.5, 2.0]
 
 
 def obj() -> bytes:
-    lines = ["# a box with a corner inside", *(f"v {x} {y} {z}" for x, y, z in [*CORNERS, INSIDE])]
+    lines = ["# a box with a corner inside", *(f"v {x} {y} {z}" for x, y, z in [*CORNERS, INNER_SIZES])]
     return "\n".join([*lines, "vn 0 0 1", *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in TRIANGLES)]).encode()
 
 
@@ -39,7 +39,7 @@ def test_a_mesh_is_read_as_its_hull(tmp_path: Path, name: str, content: bytes) -
     assert {tuple(corner) for corner in corners} == {tuple(corner) for corner in CORNERS}
     triangles = corners.reshape(-1, 3, 3)
     outward = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    assert np.all(np.einsum("ij,ij->i", outward, triangles[:, 0] - INSIDE) > 0)
+    assert np.all(np.einsum("ij,ij->i", outward, triangles[:, 0] - INNER_SIZES) > 0)
     # By the divergence theorem the triangles enclose the box.
     assert np.einsum("ij,ij->", outward, triangles[:, 0]) / 6 == pytest.approx(24.0)
 

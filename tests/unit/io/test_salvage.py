@@ -12,9 +12,9 @@ from teachpath.io.store.salvage import HEADER, TOPIC, RecordingHeader, salvage_s
 from teachpath.io.store.viewer_messages import message_batch
 from teachpath.io.wire import decode_sample, message_types
 from teachpath.records import Calibration, Sample
-from tests.unit.io.test_sample_batches import GOOD, damaged, messages
+from tests.unit.io.test_sample_batches import GOOD_BATCH, damaged, messages
 
-STATED = RecordingHeader("lift", "glove", Calibration("lab"))
+STATED_HEADER = RecordingHeader("lift", "glove", Calibration("lab"))
 
 
 def one_by_one(payloads: list[bytes], receive_ns: list[int]) -> tuple[list[Sample], str]:
@@ -30,7 +30,7 @@ def one_by_one(payloads: list[bytes], receive_ns: list[int]) -> tuple[list[Sampl
 def recording_of(payloads: list[bytes], receive_ns: list[int]) -> bytes:
     stream = io.BytesIO()
     file = McapFile(stream)
-    file.add_metadata(HEADER, {"header": documents.encode(STATED).decode()})
+    file.add_metadata(HEADER, {"header": documents.encode(STATED_HEADER).decode()})
     channel = file.add_channel(TOPIC, message_types.HAND_SAMPLE)
     if payloads:
         file.add_messages([message_batch(channel, payloads, receive_ns, receive_ns)])
@@ -40,7 +40,9 @@ def recording_of(payloads: list[bytes], receive_ns: list[int]) -> bytes:
 
 @settings(max_examples=40)
 @given(
-    st.lists(st.tuples(st.just(GOOD) | messages() | damaged(), st.sampled_from([0, 5, 2**63 - 1, 2**63, 2**64 - 1]))),
+    st.lists(
+        st.tuples(st.just(GOOD_BATCH) | messages() | damaged(), st.sampled_from([0, 5, 2**63 - 1, 2**63, 2**64 - 1]))
+    ),
     st.sampled_from([0, 0, 1, 40]),
 )
 def test_what_a_recording_holds_is_read_to_the_first_sample_that_is_refused(
@@ -49,7 +51,7 @@ def test_what_a_recording_holds_is_read_to_the_first_sample_that_is_refused(
     payloads, receive_ns = [payload for payload, _ in stored], [ns for _, ns in stored]
     content = recording_of(payloads, receive_ns)
     header, samples, fault = salvage_stream(io.BytesIO(content[: len(content) - cut]))
-    assert header == STATED
+    assert header == STATED_HEADER
     expected, refusal = one_by_one(payloads, receive_ns)
     assert repr(samples) == repr(expected)
     assert fault == refusal or (cut and not refusal)

@@ -36,7 +36,7 @@ def messages(draw: st.DrawFn) -> bytes:
     return message.SerializeToString()
 
 
-GOOD = tracker_pb2.HandSample(
+GOOD_BATCH = tracker_pb2.HandSample(
     sequence=3,
     device_ns=10**18,
     position=tracker_pb2.Vector3(x=0.1, y=0.2, z=0.3),
@@ -44,13 +44,13 @@ GOOD = tracker_pb2.HandSample(
     flexions=[0.25] * 22,
     tracked=True,
 ).SerializeToString()
-ODD = [
+ODD_BATCHES = [
     b"",
-    GOOD + GOOD,  # the last of each field counts, and the flexions of both
-    GOOD + b"\x1a\x00",
-    GOOD + b"\x92\x03\x01a",  # a field that we do not know
-    GOOD[:-1],
-    GOOD + b"\x08\x83\x80\x00",  # a number in more bytes than it needs
+    GOOD_BATCH + GOOD_BATCH,  # the last of each field counts, and the flexions of both
+    GOOD_BATCH + b"\x1a\x00",
+    GOOD_BATCH + b"\x92\x03\x01a",  # a field that we do not know
+    GOOD_BATCH[:-1],
+    GOOD_BATCH + b"\x08\x83\x80\x00",  # a number in more bytes than it needs
     bytes(5000),
     b"\xff" * 20,
 ]
@@ -66,7 +66,7 @@ def damaged(draw: st.DrawFn) -> bytes:
 
 
 @settings(max_examples=60)
-@given(st.lists(messages() | st.just(GOOD) | st.sampled_from(ODD) | damaged(), min_size=1, max_size=30))
+@given(st.lists(messages() | st.just(GOOD_BATCH) | st.sampled_from(ODD_BATCHES) | damaged(), min_size=1, max_size=30))
 def test_a_batch_is_decoded_as_its_samples_one_by_one(payloads: list[bytes]) -> None:
     columns, usable = SampleBatchDecoder().decode(payloads, range(len(payloads)), "glove")
     for i, (payload, sample) in enumerate(zip(payloads, columns, strict=True)):
@@ -80,7 +80,7 @@ def test_a_batch_is_decoded_as_its_samples_one_by_one(payloads: list[bytes]) -> 
 def test_messages_as_trackers_send_them_are_decoded_by_the_batch(count: int, first: int) -> None:
     payloads = []
     for i in range(count):
-        message = tracker_pb2.HandSample.FromString(GOOD)
+        message = tracker_pb2.HandSample.FromString(GOOD_BATCH)
         message.sequence, message.device_ns, message.position.x = first + i, 10**18 + i, 0.001 * (i + 1)
         payloads.append(message.SerializeToString())
     columns, usable = SampleBatchDecoder().decode(payloads, [7] * count)
@@ -90,7 +90,7 @@ def test_messages_as_trackers_send_them_are_decoded_by_the_batch(count: int, fir
 
 @pytest.mark.parametrize(("field", "value"), [("device_ns", 0), ("flexions", [1.5] * 22), ("flexions", [0.1] * 4)])
 def test_what_is_refused_alone_is_never_decoded_by_the_batch(field: str, value: Any) -> None:
-    message = tracker_pb2.HandSample.FromString(GOOD)
+    message = tracker_pb2.HandSample.FromString(GOOD_BATCH)
     message.ClearField(field)
     if value:
         getattr(message, field).extend(value)
@@ -101,7 +101,7 @@ def test_what_is_refused_alone_is_never_decoded_by_the_batch(field: str, value: 
 
 
 def test_columns_and_samples_are_the_same() -> None:
-    columns, _ = SampleBatchDecoder().decode([GOOD] * 3, [1, 2, 3], "glove")
+    columns, _ = SampleBatchDecoder().decode([GOOD_BATCH] * 3, [1, 2, 3], "glove")
     samples: list[Sample] = list(columns)
     assert [columns[i] for i in range(-3, 0)] == samples
     assert list(columns[1:]) == samples[1:]

@@ -17,7 +17,7 @@ from teachpath_proto.control import CommandVerb, ExecutorState, JournalVerb, Lea
 from tests.unit.recording.hands import sample
 
 FLOATS = (FieldDescriptor.CPPTYPE_DOUBLE, FieldDescriptor.CPPTYPE_FLOAT)
-FILLING = {
+FIELD_VALUES = {
     FieldDescriptor.CPPTYPE_INT64: 1, FieldDescriptor.CPPTYPE_UINT64: 1, FieldDescriptor.CPPTYPE_INT32: 1,
     FieldDescriptor.CPPTYPE_UINT32: 1, FieldDescriptor.CPPTYPE_ENUM: 1, FieldDescriptor.CPPTYPE_BOOL: True,
     FieldDescriptor.CPPTYPE_DOUBLE: 0.5, FieldDescriptor.CPPTYPE_FLOAT: 0.5, FieldDescriptor.CPPTYPE_STRING: "a",
@@ -32,18 +32,18 @@ DECODERS = [
     (tracker_pb2.StartRecording, wire.decode_recording_request),
 ]
 
-GOOD = sample(7, (0.1, 0.2, 0.3))
-STANDING = Setpoint(0, 1, 1, np.zeros(6), np.zeros(6), np.zeros(6), False, "e1")
+GOOD_SAMPLE = sample(7, (0.1, 0.2, 0.3))
+RESTING_SETPOINT = Setpoint(0, 1, 1, np.zeros(6), np.zeros(6), np.zeros(6), False, "e1")
 
 
 def payload(**changes: object) -> bytes:
-    return wire.encode_sample(GOOD._replace(**changes))  # type: ignore[arg-type]
+    return wire.encode_sample(GOOD_SAMPLE._replace(**changes))  # type: ignore[arg-type]
 
 
 def test_a_sample_survives_the_wire() -> None:
-    again = wire.decode_sample("glove", payload(), GOOD.receive_ns)
-    assert again._replace(flexions=()) == GOOD._replace(flexions=())
-    assert again.flexions == pytest.approx(GOOD.flexions, abs=1e-7)
+    again = wire.decode_sample("glove", payload(), GOOD_SAMPLE.receive_ns)
+    assert again._replace(flexions=()) == GOOD_SAMPLE._replace(flexions=())
+    assert again.flexions == pytest.approx(GOOD_SAMPLE.flexions, abs=1e-7)
 
 
 @given(st.binary(max_size=300))
@@ -109,7 +109,7 @@ def filled(kind: type[Message]) -> Message:
             inner = filled(field.message_type._concrete_class)
             getattr(message, field.name).extend([inner]) if repeated else getattr(message, field.name).CopyFrom(inner)
         else:
-            value = b"" if field.type == field.TYPE_BYTES else FILLING[field.cpp_type]
+            value = b"" if field.type == field.TYPE_BYTES else FIELD_VALUES[field.cpp_type]
             getattr(message, field.name).extend([value]) if repeated else setattr(message, field.name, value)
     return message
 
@@ -154,7 +154,7 @@ def test_no_float_of_a_hand_sample_or_a_way_to_rest_lets_one_through(value: floa
     for place in np.ndindex(way.shape):
         way[place] = value
         with pytest.raises(UnusableInput, match="way to rest is not finite"):
-            wire.decode_setpoint(wire.encode_setpoint(replace(STANDING, way_to_rest=way)))
+            wire.decode_setpoint(wire.encode_setpoint(replace(RESTING_SETPOINT, way_to_rest=way)))
         way[place] = 0.0
 
 

@@ -9,7 +9,7 @@ from teachpath.learning.resampling import arc_lengths, at_equal_arc_length
 from teachpath.records import Array, Trajectory
 
 START, GOAL = np.array([0.35, 0.25, 0.05]), np.array([0.40, -0.30, 0.05])
-WAYS = (
+WAY_POINTS = (
     np.array([[0.20, 0.12, 0.18], [0.18, -0.12, 0.20]]),  # left of both obstacles
     np.array([[0.38, 0.10, 0.34], [0.40, -0.12, 0.36]]),  # above them
     np.array([[0.55, 0.12, 0.16], [0.58, -0.12, 0.18]]),  # right of them
@@ -19,7 +19,7 @@ PERIOD = 0.02  # s
 
 def demonstration(
     rng: np.random.Generator,
-    vias: Array = WAYS[1],
+    vias: Array = WAY_POINTS[1],
     *,
     duration: float = 3.16,
     warp: float = 0.1,
@@ -51,7 +51,7 @@ def experiment_1(seed: int, *, duration_spread: float = 0.0, **options: float) -
     ways = (0, 1, 2, 2, 1, 0, 2, 0, 2, 0, 1, 0)  # as Table I lists them
     return {
         str(number + 1): demonstration(
-            rng, WAYS[way], duration=3.16 * (1 + duration_spread * rng.uniform(-1, 1)), **options
+            rng, WAY_POINTS[way], duration=3.16 * (1 + duration_spread * rng.uniform(-1, 1)), **options
         )
         for number, way in enumerate(ways)
     }

@@ -8,7 +8,7 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.records import Trajectory
 from tests.unit.learning import synthetic
 
-QUICK = LearningSettings(repeats=0)
+QUICK_SETTINGS = LearningSettings(repeats=0)
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def test_demonstrations_of_one_way_are_one_way_and_predict_each_other_better_tha
     shown: dict[str, Trajectory],
 ) -> None:
     steps: list[None] = []
-    found = evaluate_way(shown, QUICK, on_step=lambda: steps.append(None))
+    found = evaluate_way(shown, QUICK_SETTINGS, on_step=lambda: steps.append(None))
     assert (found.ways, found.left_out.hits, found.left_out.n, found.unpredicted) == (1, 0, 5, "")
     assert len(found.predicted) == 5
     assert all(each.rms < each.line for each in found.predicted)
@@ -42,14 +42,14 @@ def test_each_is_predicted_without_itself(shown: dict[str, Trajectory]) -> None:
     *alike, last = shown
     bent = np.sin(np.pi * np.linspace(0, 1, len(shown[last])))[:, None] * [0.0, 0.0, 0.3]
     odd = Trajectory(shown[last].times, shown[last].positions + bent)
-    predicted = predict_each({**{name: shown[name] for name in alike}, "odd": odd}, QUICK)
+    predicted = predict_each({**{name: shown[name] for name in alike}, "odd": odd}, QUICK_SETTINGS)
     assert predicted[-1].rms > 0.1
     assert predicted[-1].rms > max(each.rms for each in predicted[:-1])
 
 
 def test_two_demonstrations_predict_nothing_and_of_many_some_are_predicted(shown: dict[str, Trajectory]) -> None:
     two = {name: shown[name] for name in ("0", "1")}
-    assert evaluate_way(two, QUICK).predicted == []
+    assert evaluate_way(two, QUICK_SETTINGS).predicted == []
     many = {str(number): shown["0"] for number in range(10 * MAX_PREDICTED)}
     names = predicted_names(many)
     assert len(set(names)) == len(names) == MAX_PREDICTED
@@ -63,6 +63,6 @@ def test_paths_of_mode_paper_are_not_adapted(shown: dict[str, Trajectory]) -> No
 
 def test_why_nothing_is_predicted_is_said(shown: dict[str, Trajectory]) -> None:
     tiny = {name: Trajectory(each.times, 0.01 * each.positions) for name, each in shown.items()}
-    found = evaluate_way(tiny, QUICK)
+    found = evaluate_way(tiny, QUICK_SETTINGS)
     assert found.predicted == []
     assert "the shortest followed is" in found.unpredicted

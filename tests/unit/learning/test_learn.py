@@ -12,12 +12,12 @@ from teachpath.learning.settings import LearningSettings
 from teachpath.nurbs import unit_quaternions
 from teachpath.records import Learned, Trajectory
 from tests.unit.learning import synthetic
-from tests.unit.learning.usable import BOTH, PAPER, WAYS, assert_usable
+from tests.unit.learning.usable import IN_EVERY_MODE, PAPER, PAPER_CLUSTERS, assert_usable
 
 
 def test_three_ways_are_learned_from_the_first_experiment(learned: Learned, twelve: dict[str, Trajectory]) -> None:
     assert_usable(learned)
-    assert [set(cluster.members) for cluster in learned.clusters] == WAYS
+    assert [set(cluster.members) for cluster in learned.clusters] == PAPER_CLUSTERS
     for cluster, path in zip(learned.clusters, learned.paths, strict=True):
         assert path.fit.largest <= path.fit.bound == LearningSettings().error_bound
         chosen = [twelve[score.demonstration].positions for score in cluster.scores if score.selected]
@@ -36,7 +36,7 @@ def test_three_ways_are_learned_from_the_first_experiment(learned: Learned, twel
 
 def test_mode_paper_finds_the_ways_and_keeps_two_of_each(learned_as_paper: Learned) -> None:
     assert_usable(learned_as_paper)
-    assert [set(cluster.members) for cluster in learned_as_paper.clusters] == WAYS
+    assert [set(cluster.members) for cluster in learned_as_paper.clusters] == PAPER_CLUSTERS
     for cluster in learned_as_paper.clusters:
         assert sum(score.selected for score in cluster.scores) == 2
     for path in learned_as_paper.paths:
@@ -52,12 +52,12 @@ def test_the_result_names_its_settings_and_versions(learned: Learned) -> None:
 @pytest.mark.parametrize("metric", ["arc", "frechet", "dtw", "undersampled"])
 def test_every_metric_finds_the_ways(twelve: dict[str, Trajectory], metric: str) -> None:
     learned = learn(twelve, LearningSettings(metric=metric, repeats=0))
-    assert [set(cluster.members) for cluster in learned.clusters] == WAYS
+    assert [set(cluster.members) for cluster in learned.clusters] == PAPER_CLUSTERS
 
 
 def test_a_known_number_of_ways_is_found(twelve: dict[str, Trajectory]) -> None:
     learned = learn(twelve, LearningSettings(clusters=3, repeats=0))
-    assert [set(cluster.members) for cluster in learned.clusters] == WAYS
+    assert [set(cluster.members) for cluster in learned.clusters] == PAPER_CLUSTERS
     assert recut_members(learned, clusters=3) == recut_members(learned, threshold=learned.threshold)
 
 
@@ -101,7 +101,7 @@ def test_a_motion_that_comes_back_to_the_start_is_followed_and_mode_paper_warns(
     assert warned.fit.largest <= warned.fit.bound
 
 
-@BOTH
+@IN_EVERY_MODE
 def test_progress_grows_to_one_and_says_something(settings: LearningSettings) -> None:
     told: list[tuple[float, str]] = []
     learn(synthetic.experiment_2(1), settings, progress=lambda fraction, sentence: told.append((fraction, sentence)))
@@ -113,7 +113,7 @@ def test_progress_grows_to_one_and_says_something(settings: LearningSettings) ->
     assert all(sentence for _, sentence in told)
 
 
-@BOTH
+@IN_EVERY_MODE
 @pytest.mark.parametrize("after", [0.0, 0.1, 0.5, 0.8])
 def test_cancelling_at_any_stage_passes_through(settings: LearningSettings, after: float) -> None:
     def cancel(fraction: float, _sentence: str) -> None:

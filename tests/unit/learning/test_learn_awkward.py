@@ -12,7 +12,7 @@ from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Trajectory
 from tests.unit.learning import synthetic
-from tests.unit.learning.usable import BOTH, assert_usable
+from tests.unit.learning.usable import IN_EVERY_MODE, assert_usable
 
 
 def short(samples: int, seed: int = 1) -> Trajectory:
@@ -36,7 +36,7 @@ def test_demonstrations_that_cancel_out_are_refused_in_words() -> None:
         learn({"there": one, "away": mirrored}, LearningSettings(threshold=10.0))
 
 
-@BOTH
+@IN_EVERY_MODE
 def test_one_demonstration_gives_one_path_along_it(settings: LearningSettings) -> None:
     one = synthetic.experiment_2(1)["1"]
     learned = learn({"only": one}, settings)
@@ -46,7 +46,7 @@ def test_one_demonstration_gives_one_path_along_it(settings: LearningSettings) -
     np.testing.assert_allclose(learned.paths[0].curve(0.0), one.positions[0], atol=1e-12)
 
 
-@BOTH
+@IN_EVERY_MODE
 @pytest.mark.parametrize("count", [2, 3])
 def test_few_demonstrations_give_one_path(settings: LearningSettings, count: int) -> None:
     learned = learn(synthetic.experiment_2(1, count=count), settings)
@@ -54,7 +54,7 @@ def test_few_demonstrations_give_one_path(settings: LearningSettings, count: int
     assert len(learned.paths) == 1
 
 
-@BOTH
+@IN_EVERY_MODE
 @pytest.mark.parametrize("count", [2, 3, 6])
 def test_identical_demonstrations_give_one_path(settings: LearningSettings, count: int) -> None:
     one = synthetic.experiment_2(1)["1"]
@@ -64,13 +64,13 @@ def test_identical_demonstrations_give_one_path(settings: LearningSettings, coun
     assert learned.linkage[:, 2].max() == 0.0
 
 
-@BOTH
+@IN_EVERY_MODE
 @pytest.mark.parametrize("samples", [5, 8, 12, 19, 20, 21, 39, 40])
 def test_demonstrations_around_the_analysis_window_are_learned(settings: LearningSettings, samples: int) -> None:
     assert_usable(learn({str(i): short(samples, i) for i in range(4)}, settings))
 
 
-@BOTH
+@IN_EVERY_MODE
 def test_wildly_different_lengths_are_learned(settings: LearningSettings) -> None:
     demonstrations = {str(i): short(samples, i) for i, samples in enumerate([25, 160, 1500, 400])}
     learned = learn(demonstrations, settings)
@@ -79,7 +79,7 @@ def test_wildly_different_lengths_are_learned(settings: LearningSettings) -> Non
         assert len(learned.paths) == 1
 
 
-@BOTH
+@IN_EVERY_MODE
 def test_an_empty_set_is_refused(settings: LearningSettings) -> None:
     with pytest.raises(LearningFailed, match="no demonstration") as refused:
         learn({}, settings)
@@ -111,7 +111,7 @@ def spoilt(kind: str) -> Trajectory:
     return replace(good, times=times, positions=positions)
 
 
-@BOTH
+@IN_EVERY_MODE
 @pytest.mark.parametrize(
     ("kind", "sentence"),
     [

@@ -11,10 +11,10 @@ from teachpath.learning.learn import learn
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Learned, Trajectory
 from tests.unit.learning import synthetic
-from tests.unit.learning.usable import BOTH
+from tests.unit.learning.usable import IN_EVERY_MODE
 
 
-@BOTH
+@IN_EVERY_MODE
 def test_the_same_input_gives_the_same_bits(settings: LearningSettings) -> None:
     first, second = (learn(synthetic.experiment_1(2), settings) for _ in range(2))
     np.testing.assert_array_equal(first.linkage, second.linkage)
@@ -73,7 +73,7 @@ def test_times_in_another_clock_give_the_same_paths(learned: Learned, twelve: di
         np.testing.assert_allclose(there.curve.control_points, here.curve.control_points, atol=1e-6)
 
 
-@BOTH
+@IN_EVERY_MODE
 def test_the_order_in_which_demonstrations_are_listed_changes_no_selection(settings: LearningSettings) -> None:
     demonstrations = synthetic.experiment_2(8)
     here, there = (

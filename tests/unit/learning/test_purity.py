@@ -24,23 +24,33 @@ from teachpath.learning.settings import LearningSettings, StepCounter, Subprogre
 from teachpath.records import Learned, Trajectory
 from tests.unit.learning import synthetic
 
-LEARNING = Path(__file__).parents[3] / "service" / "teachpath" / "learning"
-FILES = sorted(LEARNING.rglob("*.py"))
-CHANGING = {"cache", "lru_cache", "cached_property", "uuid", "uuid4", "secrets", "random", "datetime", "perf_counter"}
+LEARNING_FOLDER = Path(__file__).parents[3] / "service" / "teachpath" / "learning"
+FILES = sorted(LEARNING_FOLDER.rglob("*.py"))
+CHANGING_NAMES = {
+    "cache",
+    "lru_cache",
+    "cached_property",
+    "uuid",
+    "uuid4",
+    "secrets",
+    "random",
+    "datetime",
+    "perf_counter",
+}
 
 
 def shown() -> dict[str, Trajectory]:
     return synthetic.experiment_2(1)
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(LEARNING).as_posix())
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(LEARNING_FOLDER).as_posix())
 def test_no_module_keeps_state_or_asks_clock_or_chance(file: Path) -> None:
     tree = ast.parse(file.read_text())
     for node in ast.walk(tree):
         assert not isinstance(node, ast.Global), ast.unparse(node)
         if isinstance(node, ast.Import | ast.ImportFrom):
             names = {alias.name.split(".")[0] for alias in node.names} | {getattr(node, "module", "") or ""}
-            assert not names & CHANGING, ast.unparse(node)
+            assert not names & CHANGING_NAMES, ast.unparse(node)
         if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("default_rng"):
             assert node.args, "a generator without a seed"
         if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "np.random":

@@ -10,10 +10,12 @@ import pytest
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Learned
 
-WAYS = [{"1", "6", "8", "10", "12"}, {"2", "5", "11"}, {"3", "4", "7", "9"}]
+PAPER_CLUSTERS = [{"1", "6", "8", "10", "12"}, {"2", "5", "11"}, {"3", "4", "7", "9"}]
 PAPER = LearningSettings(mode="paper", threshold=0.08, repeats=0)
-REPAIRED = replace(PAPER, mode="repaired")
-BOTH = pytest.mark.parametrize("settings", [LearningSettings(), PAPER, REPAIRED], ids=["default", "paper", "repaired"])
+REPAIRED_SETTINGS = replace(PAPER, mode="repaired")
+IN_EVERY_MODE = pytest.mark.parametrize(
+    "settings", [LearningSettings(), PAPER, REPAIRED_SETTINGS], ids=["default", "paper", "repaired"]
+)
 
 
 def assert_usable(learned: Learned) -> None:

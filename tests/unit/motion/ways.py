@@ -8,7 +8,7 @@ from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
 from teachpath.nurbs import Curve
 from teachpath.records import Fit, LearnedPath, Scene, Shape
 
-NEAR, MIDDLE, FAR = 0.38, 0.58, 0.78
+NEAR_X, MIDDLE, FAR_X = 0.38, 0.58, 0.78
 HEIGHT = 0.60
 
 

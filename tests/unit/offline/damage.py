@@ -21,7 +21,7 @@ from tests.unit.recording.hands import demonstration
 SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.48)))
 SETTINGS = RecordingSettings()
 TASK = "lift"
-SHOWN = 110  # samples of one demonstration
+SAMPLE_COUNT = 110  # samples of one demonstration
 
 
 @contextmanager
@@ -41,12 +41,12 @@ def make_station(data: Path, takes: int = 3, *, torn: int = 0) -> list[Demonstra
         setup = RecordingSetup(TASK, "glove", Calibration("identity"), SCENE, new_id=lambda: next(ids, "demo-torn"))
         session = RecordingSession(store, SETTINGS, setup)
         for take in range(takes):
-            for sample in demonstration(1 + take * SHOWN):
+            for sample in demonstration(1 + take * SAMPLE_COUNT):
                 session.add(sample)
         session.finish()
         if torn:
             broken = RecordingSession(store, SETTINGS, replace(setup, new_id=lambda: "demo-torn"))
-            for sample in demonstration(1 + takes * SHOWN)[:torn]:
+            for sample in demonstration(1 + takes * SAMPLE_COUNT)[:torn]:
                 broken.add(sample)
             broken.flush(0.0)
             broken.fail("the service was killed")

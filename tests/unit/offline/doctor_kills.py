@@ -21,9 +21,9 @@ from sqlalchemy.engine import Engine
 
 from tests.unit.offline.damage import contradictions, drop_row, examined, file_of, flip, make_station, rows_of
 
-WATCHED = ("open", "os.rename", "os.remove", "os.mkdir", "os.rmdir")
+WATCHED_CALLS = ("open", "os.rename", "os.remove", "os.mkdir", "os.rmdir")
 MAX_DEATHS = 3
-KILLED = 9
+KILLED_STATUS = 9
 
 
 def make_damage(data: Path) -> None:
@@ -65,9 +65,9 @@ def examine_and_die(data: Path, die_at: int, told: int) -> None:
         nonlocal seen
         seen += 1
         if seen == die_at:
-            os._exit(KILLED)
+            os._exit(KILLED_STATUS)
 
-    sys.addaudithook(lambda name, _: note() if name in WATCHED else None)
+    sys.addaudithook(lambda name, _: note() if name in WATCHED_CALLS else None)
     event.listen(Engine, "before_cursor_execute", note)
     event.listen(Engine, "commit", note)
     examined(data)
@@ -80,7 +80,7 @@ def trial(data: Path, template: Path, chance: random.Random, accesses: int) -> t
     shutil.copytree(template, data)
     deaths, silent = 0, os.open(os.devnull, os.O_WRONLY)
     while deaths < MAX_DEATHS:
-        if in_child(partial(examine_and_die, data, chance.randint(1, accesses), silent)) != KILLED:
+        if in_child(partial(examine_and_die, data, chance.randint(1, accesses), silent)) != KILLED_STATUS:
             break
         deaths += 1
     os.close(silent)

@@ -15,16 +15,16 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.offline.report import Review, review_of
 from teachpath.records import Demonstration, Trajectory
 from tests.contract.rows import a_job, demonstration
-from tests.unit.motion.ways import FAR, NEAR, way
+from tests.unit.motion.ways import FAR_X, NEAR_X, way
 
-HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'`&{{ 7 * 7 }}<!--"
+HOSTILE_TEXT = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'`&{{ 7 * 7 }}<!--"
 COUNT = 8
 
 
 def trajectory(shown: Demonstration) -> Trajectory:
     """One of two ways through the paper's scene, a little different each time; the seventh swings."""
     s = np.linspace(0.0, 1.0, 120)
-    points = way(NEAR if shown.number % 2 else FAR).curve(s)
+    points = way(NEAR_X if shown.number % 2 else FAR_X).curve(s)
     sway = 0.003 * np.sin(7.0 * shown.number + 3.0 * s) + (0.012 * np.sin(25.0 * s) if shown.number == 7 else 0.0)
     return Trajectory(3.0 * s, points + (sway * np.sin(np.pi * s) ** 2)[:, None] * [0.5, 0.0, 1.0])
 
@@ -34,10 +34,13 @@ def learned_store(folder: str) -> Store:
     store = Store(StoreSettings(folder))
     for name in ("t", "unlearned"):
         store.ensure_task(name, scene="paper", calibration="identity")
-    shown = [store.add_demonstration(demonstration(f"d{i}", source=HOSTILE, reasons=(HOSTILE,))) for i in range(COUNT)]
+    shown = [
+        store.add_demonstration(demonstration(f"d{i}", source=HOSTILE_TEXT, reasons=(HOSTILE_TEXT,)))
+        for i in range(COUNT)
+    ]
     store.add_job(a_job("learn-1"))
     found = learn({d.id: trajectory(d) for d in shown}, LearningSettings(repeats=1))
-    store.finish_learning("learn-1", replace(found, notes=(HOSTILE,)))
+    store.finish_learning("learn-1", replace(found, notes=(HOSTILE_TEXT,)))
     run = store.newest_run("t")
     assert run is not None
     path = run.learned.paths[0]

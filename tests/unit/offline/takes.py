@@ -13,7 +13,7 @@ from teachpath.records import Calibration, Demonstration, Sample, Scene, Traject
 from teachpath_proto.sample_rules import GRASP_BUTTON
 from tests.unit.recording.hands import demonstration
 
-EMPTY = Scene("empty")
+EMPTY_SCENE = Scene("empty")
 LAB = Calibration("lab", 0.5, (0.6, 0.0, 0.8, 0.0), (0.1, 0.2, 0.3))
 SETTINGS = RecordingSettings()
 
@@ -64,7 +64,7 @@ TAKES: dict[str, Callable[[], list[Sample]]] = {"whole": whole, "lossy": lossy, 
 def record(store: Store, samples: Sequence[Sample], *, gone: bool = False, rate: float = 50.0) -> Demonstration:
     """Record a take under a calibration of its own; `gone`: the tracker leaves before the hand has come to rest."""
     store.ensure_task("lift", scene="empty", calibration="lab")
-    session = RecordingSession(store, SETTINGS, RecordingSetup("lift", "glove", LAB, EMPTY, rate))
+    session = RecordingSession(store, SETTINGS, RecordingSetup("lift", "glove", LAB, EMPTY_SCENE, rate))
     session.counter.count_refused("a payload was no sample")
     finished = [session.add(sample) for sample in (samples[:-20] if gone else samples)]
     finished += [session.on_tracker_lost("the tracker has gone in mid-take")] if gone else session.finish()
@@ -73,7 +73,7 @@ def record(store: Store, samples: Sequence[Sample], *, gone: bool = False, rate:
 
 
 def trajectory(store: Store) -> Callable[[Demonstration], Trajectory]:
-    return Annotations(store, SETTINGS, lambda _: EMPTY).trajectory
+    return Annotations(store, SETTINGS, lambda _: EMPTY_SCENE).trajectory
 
 
 def said(row: Demonstration) -> Iterator[object]:

@@ -74,7 +74,7 @@ def test_a_row_and_its_file_say_the_same(data: Path) -> None:
 
 Damage = Callable[[Path], object]
 TRUNCATE: Damage = lambda file: os.truncate(file, file.stat().st_size * 2 // 3)  # noqa: E731
-LOST: dict[str, tuple[FaultKind, Damage]] = {
+LOST_FILES: dict[str, tuple[FaultKind, Damage]] = {
     "deleted": (FaultKind.MISSING, lambda file: file.unlink()),
     "truncated": (FaultKind.DAMAGED, TRUNCATE),
     "empty": (FaultKind.DAMAGED, lambda file: file.write_bytes(b"")),
@@ -84,7 +84,7 @@ LOST: dict[str, tuple[FaultKind, Damage]] = {
 }
 
 
-@pytest.mark.parametrize(("kind", "damage"), LOST.values(), ids=LOST.keys())
+@pytest.mark.parametrize(("kind", "damage"), LOST_FILES.values(), ids=LOST_FILES.keys())
 def test_what_is_lost_is_told_with_the_way_out_and_harms_nothing_else(
     data: Path, kind: FaultKind, damage: Damage
 ) -> None:
@@ -102,7 +102,7 @@ def test_what_is_lost_is_told_with_the_way_out_and_harms_nothing_else(
     assert exit_code(examined(data)) is ExitCode.WHOLE
 
 
-@pytest.mark.parametrize("damage", [damage for kind, damage in LOST.values() if kind is FaultKind.DAMAGED])
+@pytest.mark.parametrize("damage", [damage for kind, damage in LOST_FILES.values() if kind is FaultKind.DAMAGED])
 @pytest.mark.parametrize("kind", ["mcap", "csv", "lerobot"])
 def test_export_and_learning_refuse_what_does_not_match_its_hash(
     data: Path, tmp_path: Path, damage: Damage, kind: str

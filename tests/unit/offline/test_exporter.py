@@ -14,7 +14,7 @@ from teachpath.io.store.store import Store
 from teachpath.jobs.settings import JobSettings
 from teachpath.offline.exporter import Exporter, ExportSource
 from teachpath.records import Demonstration
-from tests.unit.offline.takes import EMPTY, SETTINGS, TAKES, record
+from tests.unit.offline.takes import EMPTY_SCENE, SETTINGS, TAKES, record
 
 Open = Callable[..., Exporter]
 DEFAULTS = JobSettings()
@@ -33,7 +33,7 @@ def open_exporter(tmp_path: Path) -> Iterator[Open]:
     opened: list[Exporter] = []
 
     def opener(settings: JobSettings = DEFAULTS) -> Exporter:
-        source = ExportSource(StoreSettings(data_dir=str(tmp_path / "data")), SETTINGS, (EMPTY,))
+        source = ExportSource(StoreSettings(data_dir=str(tmp_path / "data")), SETTINGS, (EMPTY_SCENE,))
         opened.append(Exporter(source, settings))
         return opened[-1]
 

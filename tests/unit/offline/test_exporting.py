@@ -20,7 +20,7 @@ from teachpath.offline.file_samples import Source
 from teachpath.offline.importing import import_file
 from teachpath.recorder.annotations import Annotations
 from teachpath.records import Amendment, Calibration, Demonstration
-from tests.unit.offline.takes import EMPTY, SETTINGS, TAKES, record, said, trajectory, whole
+from tests.unit.offline.takes import EMPTY_SCENE, SETTINGS, TAKES, record, said, trajectory, whole
 
 
 @pytest.fixture
@@ -37,7 +37,13 @@ def exported(store: Store, rows: list[Demonstration], kind: str, into: Path) -> 
 def imported(store: Store, file: Path, kind: str) -> Demonstration:
     source = Source(file.name, file.read_bytes(), kind)
     ((row, _),) = import_file(
-        store, SETTINGS, source, task="again", scene=EMPTY, calibration=Calibration("identity"), limits=ImportSettings()
+        store,
+        SETTINGS,
+        source,
+        task="again",
+        scene=EMPTY_SCENE,
+        calibration=Calibration("identity"),
+        limits=ImportSettings(),
     )
     return row
 
@@ -65,7 +71,7 @@ def test_what_is_imported_again_has_the_same_samples_and_the_same_verdict(
 def test_what_an_operator_said_is_said_again(
     store: Store, tmp_path: Path, mark: str, trim: tuple[int, int], discarded: bool, kind: str
 ) -> None:
-    annotations = Annotations(store, SETTINGS, lambda _: EMPTY)
+    annotations = Annotations(store, SETTINGS, lambda _: EMPTY_SCENE)
     row = annotations.amend(record(store, whole()).id, Amendment(mark=mark, trim=trim, discarded=discarded))
     (file,) = exported(store, [row], kind, tmp_path / "out")
     again = imported(store, file, kind)

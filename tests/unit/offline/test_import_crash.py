@@ -22,8 +22,8 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Array, Calibration, Demonstration, Job, JobState, Scene, Task
 from tests.waiting import HANG
 
-EMPTY, JOB = Scene("empty"), "import-1"
-TASK = Task("wipe", EMPTY.name, "identity", 0)
+IMPORT_ARGUMENTS, JOB = Scene("empty"), "import-1"
+TASK = Task("wipe", IMPORT_ARGUMENTS.name, "identity", 0)
 MOTIONS = 3
 
 
@@ -48,7 +48,7 @@ def prepared(folder: Path) -> list[Demonstration]:
         "npy",
         ReadOptions(),
         PhaseMarks(),
-        EMPTY,
+        IMPORT_ARGUMENTS,
         Calibration("identity"),
         RecordingSettings(),
         ImportSettings(),
@@ -87,7 +87,7 @@ def test_an_import_that_was_killed_between_recordings_and_rows_is_there_once(tmp
     assert killed.exitcode == -signal.SIGKILL
     assert (len(store.recordings.finished()), store.demonstrations(TASK.name)) == (MOTIONS, [])
     if examined:
-        assert len(examine(store, RecordingSettings(), {EMPTY.name: EMPTY}, data)) == MOTIONS
+        assert len(examine(store, RecordingSettings(), {IMPORT_ARGUMENTS.name: IMPORT_ARGUMENTS}, data)) == MOTIONS
     assert finish(store, folder) == f"1-{MOTIONS}"
     stored = store.demonstrations(TASK.name)
     assert [len(store.recordings.samples(row.recording)) for row in stored] == [50] * MOTIONS

@@ -93,7 +93,7 @@ def npy(shape: tuple[int, ...], dtype: str) -> bytes:
     return stream.getvalue()
 
 
-FULL = 16 * 2**20
+FULL_SIZE = 16 * 2**20
 BOMBS: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "a chunk that says that it expands to 1 GiB": (
         "mcap",
@@ -118,7 +118,10 @@ BOMBS: dict[str, tuple[str, Callable[[], bytes], str]] = {
     "many chunks": (
         "mcap",
         lambda: mcap(
-            "zstd", zstandard.compress(b"\x80" + (FULL - 9).to_bytes(8, "little") + bytes(FULL - 9)), FULL, 40
+            "zstd",
+            zstandard.compress(b"\x80" + (FULL_SIZE - 9).to_bytes(8, "little") + bytes(FULL_SIZE - 9)),
+            FULL_SIZE,
+            40,
         ),
         "its chunks expand to 285212672 bytes or more, limit 268435456",
     ),

@@ -16,7 +16,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from tests.unit.recording.hands import demonstration
 
-EMPTY = Scene("empty")
+EMPTY_SCENE = Scene("empty")
 BLOCK = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.48)))
 IDENTITY = Calibration("identity")
 
@@ -33,7 +33,7 @@ def csv(points: int) -> bytes:
 
 
 def imported(
-    store: Store, content: bytes, task: str = "wipe", scene: Scene = EMPTY
+    store: Store, content: bytes, task: str = "wipe", scene: Scene = EMPTY_SCENE
 ) -> list[tuple[Demonstration, Trajectory]]:
     source = Source("wipe.csv", content)
     return import_file(
@@ -102,7 +102,13 @@ def test_an_exported_recording_imports_as_the_same_demonstration(store: Store) -
     exported = store.recordings.path(first.recording).read_bytes()
     source = Source("again.mcap", exported, "mcap")
     ((second, same),) = import_file(
-        store, RecordingSettings(), source, task="wipe", scene=EMPTY, calibration=IDENTITY, limits=ImportSettings()
+        store,
+        RecordingSettings(),
+        source,
+        task="wipe",
+        scene=EMPTY_SCENE,
+        calibration=IDENTITY,
+        limits=ImportSettings(),
     )
     assert np.array_equal(way.positions, same.positions)
     assert np.array_equal(way.times, same.times)
@@ -119,7 +125,13 @@ def test_a_torn_recording_is_refused_and_leaves_nothing(store: Store, keep: floa
     source = Source("torn.mcap", content[: int(keep * len(content))], "mcap")
     with pytest.raises(UnusableRecording, match=r"torn\.mcap: no whole recording .*teachpath doctor"):
         import_file(
-            store, RecordingSettings(), source, task="lift", scene=EMPTY, calibration=IDENTITY, limits=ImportSettings()
+            store,
+            RecordingSettings(),
+            source,
+            task="lift",
+            scene=EMPTY_SCENE,
+            calibration=IDENTITY,
+            limits=ImportSettings(),
         )
     assert store.tasks() == []
 

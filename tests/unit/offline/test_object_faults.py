@@ -17,7 +17,7 @@ from tests.unit.io.spools import upload
 from tests.unit.offline.damage import SETTINGS, TASK, drop_row, make_station
 
 URL = f"s3://{BUCKET}/cell-1"
-FIRST = f"cell-1/{TASK}/demo-1.mcap"
+FIRST_KEY = f"cell-1/{TASK}/demo-1.mcap"
 
 
 def of(data: Path) -> StoreSettings:
@@ -77,18 +77,18 @@ def test_an_object_that_is_gone_is_uploaded_again_where_its_file_is_still_here(
     data: Path, objects: ObjectServer
 ) -> None:
     upload(of(data), passes=1)
-    del objects.objects[FIRST]
+    del objects.objects[FIRST_KEY]
     gone, *left = examined(data)
     assert (gone.kind, gone.mended, kinds(left)) == (FaultKind.MISSING, True, [(FaultKind.LEFTOVER, True)] * 2)
-    assert FIRST in objects.objects
+    assert FIRST_KEY in objects.objects
     assert is_whole(data)
 
 
 @pytest.mark.parametrize(
     ("damage", "kind", "said"),
     [
-        (lambda objects: objects.pop(FIRST), FaultKind.MISSING, f"its object {URL}/{TASK}/demo-1.mcap is gone"),
-        (lambda objects: objects.update({FIRST: b"else"}), FaultKind.DAMAGED, "is not what was recorded"),
+        (lambda objects: objects.pop(FIRST_KEY), FaultKind.MISSING, f"its object {URL}/{TASK}/demo-1.mcap is gone"),
+        (lambda objects: objects.update({FIRST_KEY: b"else"}), FaultKind.DAMAGED, "is not what was recorded"),
     ],
 )
 def test_an_object_that_is_lost_is_said(
@@ -104,9 +104,9 @@ def test_an_object_that_is_lost_is_said(
 
 def test_a_damaged_object_never_costs_the_file(data: Path, objects: ObjectServer) -> None:
     upload(of(data), passes=1)
-    objects.objects[FIRST] = b"else"
+    objects.objects[FIRST_KEY] = b"else"
     assert "move it away and run the doctor again" in examined(data)[0].sentence
-    del objects.objects[FIRST]  # as it says
+    del objects.objects[FIRST_KEY]  # as it says
     assert kinds(examined(data)) == [(FaultKind.MISSING, True)]
     assert is_whole(data)
 
@@ -154,4 +154,4 @@ def test_a_backup_says_what_stays_in_object_storage(data: Path, tmp_path: Path, 
     made = back_up(of(data), tmp_path / "fetched")
     assert (made.distant, made.faults) == (0, ())
     assert replace(made, size=0) == replace(back_up(of(data), tmp_path / "again"), size=0)
-    assert (tmp_path / "fetched" / "recordings" / TASK / "demo-1.mcap").read_bytes() == objects.objects[FIRST]
+    assert (tmp_path / "fetched" / "recordings" / TASK / "demo-1.mcap").read_bytes() == objects.objects[FIRST_KEY]

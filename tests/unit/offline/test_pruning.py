@@ -10,7 +10,7 @@ from teachpath.errors import UnusableInput
 from teachpath.offline.pruning import DAY, prune
 from tests.unit.offline.damage import contradictions, examined, make_station
 
-OLD = 10  # days
+OLD_DAYS = 10  # days
 
 
 def test_only_what_is_set_aside_and_old_is_removed(tmp_path: Path) -> None:
@@ -21,16 +21,16 @@ def test_only_what_is_set_aside_and_old_is_removed(tmp_path: Path) -> None:
     (data / "executions").mkdir(exist_ok=True)
     for name in ("executions/e1.mcap", "executions/e2.torn", "recordings/lift/new.mcap.copy", "aside-1/file"):
         (data / name).write_bytes(b"")
-    then = time.time() - (OLD + 1) * DAY
+    then = time.time() - (OLD_DAYS + 1) * DAY
     for path in data.rglob("*"):
         if path.name != "new.mcap.copy":
             os.utime(path, (then, then))
     aside = ["aside-1", "e2.torn", "demo-torn.mcap.part.salvaged"]
-    assert [path.name for path in prune(data, OLD, dry_run=True)] == aside
-    assert [path.name for path in prune(data, OLD)] == aside
+    assert [path.name for path in prune(data, OLD_DAYS, dry_run=True)] == aside
+    assert [path.name for path in prune(data, OLD_DAYS)] == aside
     assert not (data / "aside-1").exists()
-    assert prune(data, OLD) == []
-    assert [path.name for path in prune(data, OLD, executions=True)] == ["e1.mcap"]
+    assert prune(data, OLD_DAYS) == []
+    assert [path.name for path in prune(data, OLD_DAYS, executions=True)] == ["e1.mcap"]
     assert contradictions(data) == []
     with pytest.raises(UnusableInput, match="under 0"):
         prune(data, -1.0)

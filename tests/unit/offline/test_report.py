@@ -21,7 +21,7 @@ from teachpath.live.preview.page_modules import import_map
 from teachpath.motion.arm.model import Arm
 from teachpath.offline.report import write_package
 from teachpath.offline.report.package import REPLACED_MODULES, package_html
-from tests.unit.offline.reviews import COUNT, HOSTILE, learned_store, review
+from tests.unit.offline.reviews import COUNT, HOSTILE_TEXT, learned_store, review
 
 
 class Elements(HTMLParser):
@@ -101,12 +101,12 @@ def test_its_modules_are_the_files_of_the_page_but_for_the_names_that_they_impor
 def test_text_from_outside_stays_text(store: Store) -> None:
     found = review(store)
     task = replace(
-        found, run=replace(found.run, task=HOSTILE)
+        found, run=replace(found.run, task=HOSTILE_TEXT)
     )  # as no name may be, but the template must not rely on it
     plain, hostile = Elements(package_html(found)), Elements(package_html(task))
     assert [tag for tag, _, _ in hostile.found] == [tag for tag, _, _ in plain.found]
-    assert json.loads(hostile.text("archive"))[f"tasks/t/runs/{found.run.id}"]["learned"]["notes"] == [HOSTILE]
-    assert next(text for tag, _, text in hostile.found if tag == "title").startswith(HOSTILE)
+    assert json.loads(hostile.text("archive"))[f"tasks/t/runs/{found.run.id}"]["learned"]["notes"] == [HOSTILE_TEXT]
+    assert next(text for tag, _, text in hostile.found if tag == "title").startswith(HOSTILE_TEXT)
 
 
 def test_only_what_the_package_itself_brings_may_run(store: Store) -> None:

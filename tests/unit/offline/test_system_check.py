@@ -8,7 +8,7 @@ import pytest
 from teachpath.offline import system_check
 from teachpath.offline.system_check import SystemFinding, examine_system
 
-LACKING = {
+LACKING_FINDINGS = {
     "cores": system_check.judge_cores(system_check.LEAST_CORES - 1),
     "memory": system_check.judge_memory(system_check.LEAST_MEMORY - 1),
     "disk": system_check.judge_disk(Path("data"), system_check.LEAST_DISK - 1),
@@ -18,7 +18,7 @@ LACKING = {
     "browser": system_check.judge_browser(""),
     "nginx": system_check.judge_nginx(""),
 }
-FINE = {
+FINE_FINDINGS = {
     "cores": system_check.judge_cores(system_check.LEAST_CORES),
     "memory": system_check.judge_memory(system_check.LEAST_MEMORY),
     "disk": system_check.judge_disk(Path("data"), system_check.LEAST_DISK),
@@ -31,13 +31,13 @@ FINE = {
 }
 
 
-@pytest.mark.parametrize("finding", LACKING.values(), ids=LACKING)
+@pytest.mark.parametrize("finding", LACKING_FINDINGS.values(), ids=LACKING_FINDINGS)
 def test_what_is_lacking_is_said_with_the_way_out(finding: SystemFinding) -> None:
     assert finding.lacking
     assert any(way in finding.sentence for way in ("; end", "; learn", "; free", "; allow", ": end", "sudo apt-get"))
 
 
-@pytest.mark.parametrize("finding", FINE.values(), ids=FINE)
+@pytest.mark.parametrize("finding", FINE_FINDINGS.values(), ids=FINE_FINDINGS)
 def test_what_is_there_lacks_nothing(finding: SystemFinding) -> None:
     assert not finding.lacking
     assert finding.sentence

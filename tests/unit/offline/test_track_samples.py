@@ -20,7 +20,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Amendment, Array, Calibration, Demonstration, Scene
 from tests.unit.recording.test_motion_phases import pick_and_place
 
-SETTINGS, EMPTY = RecordingSettings(), Scene("empty")
+SETTINGS, EMPTY_ARGUMENTS = RecordingSettings(), Scene("empty")
 
 
 @pytest.fixture
@@ -45,7 +45,13 @@ def line(count: int = 150) -> Array:
 def imported(store: Store, text: str, options: ReadOptions | None = None, **marks: object) -> Demonstration:
     source = Source("f.csv", text.encode(), "", options or ReadOptions(), PhaseMarks(**marks))  # type: ignore[arg-type]
     ((row, _),) = import_file(
-        store, SETTINGS, source, task="t", scene=EMPTY, calibration=Calibration("identity"), limits=ImportSettings()
+        store,
+        SETTINGS,
+        source,
+        task="t",
+        scene=EMPTY_ARGUMENTS,
+        calibration=Calibration("identity"),
+        limits=ImportSettings(),
     )
     return row
 
@@ -117,7 +123,7 @@ def test_a_motion_that_leaves_it_open_is_rejected_until_it_is_marked(store: Stor
     row = imported(store, shown(1, pause=0.5))
     assert row.verdict == "reject"
     assert "not sure where the object was taken and put: the hand dwells at 3 places" in row.reasons[0]
-    annotations = Annotations(store, SETTINGS, lambda _: EMPTY)
+    annotations = Annotations(store, SETTINGS, lambda _: EMPTY_ARGUMENTS)
     trimmed = annotations.amend(row.id, Amendment(trim=(80, 250)))
     assert (trimmed.verdict, trimmed.reasons) == ("clean", ())
     assert annotations.amend(row.id, Amendment(trim=(0, 0))).reasons == row.reasons

@@ -13,10 +13,10 @@ from teachpath_proto.keys import NAME, is_name, name_refusal
 
 ROOT = Path(__file__).parents[3]
 LETTERS = string.ascii_letters + string.digits
-NEARLY = st.text(st.sampled_from(LETTERS + "._-é \n/"), max_size=70)
+NEAR_NAMES = st.text(st.sampled_from(LETTERS + "._-é \n/"), max_size=70)
 
 
-@given(NEARLY)
+@given(NEAR_NAMES)
 @example("a" * 64)
 @example("a" * 65)
 @example("a..b")

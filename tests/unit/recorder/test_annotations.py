@@ -8,15 +8,15 @@ from teachpath_proto import tracker_pb2
 from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration
 
-SHOWN = 110
+SAMPLE_COUNT = 110
 
 
 @pytest.fixture
 def shown(bench: Bench) -> Bench:
     """A bench on which three demonstrations were shown, and the recording is still running."""
     bench.begin()
-    bench.send([s for i in range(3) for s in demonstration(1 + i * SHOWN)])
-    bench.received(3 * SHOWN)
+    bench.send([s for i in range(3) for s in demonstration(1 + i * SAMPLE_COUNT)])
+    bench.received(3 * SAMPLE_COUNT)
     return bench
 
 

@@ -19,12 +19,12 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, TaughtPoint, Vector, Verdict
 from tests.unit.recording.hands import demonstration
 
-IDENTITY, EMPTY = Calibration("identity"), Scene("empty")
+IDENTITY, CALIBRATION_ARGUMENTS = Calibration("identity"), Scene("empty")
 SQUARE = [(0.4, -0.3, 0.5), (0.7, -0.3, 0.5), (0.7, 0.3, 0.5)]
 
 
 def scene(_name: str) -> Scene:
-    return EMPTY
+    return CALIBRATION_ARGUMENTS
 
 
 def shifted(offset: Vector) -> list[TaughtPoint]:
@@ -45,7 +45,9 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 
 def recorded(store: Store, calibration: Calibration) -> Demonstration:
-    session = RecordingSession(store, RecordingSettings(), RecordingSetup("lift", "glove", calibration, EMPTY))
+    session = RecordingSession(
+        store, RecordingSettings(), RecordingSetup("lift", "glove", calibration, CALIBRATION_ARGUMENTS)
+    )
     finished = [session.add(sample) for sample in demonstration()] + session.finish()
     ((row, _),) = [f for f in finished if f is not None]
     return row

@@ -18,7 +18,7 @@ from teachpath.records import Calibration, Routine
 from tests.unit.recorder.recorders import SCENE
 from tests.unit.recording.hands import demonstration
 
-SHOWN = 110  # samples of a demonstration, of which some come after its end
+SAMPLE_COUNT = 110  # samples of a demonstration, of which some come after its end
 
 
 class Later(Executor):
@@ -52,7 +52,7 @@ def closed_file(store: Store) -> Path:
 def test_what_waits_to_be_completed_survives_the_process(store: Store) -> None:
     session, finished = recorded_later(store, later := Later(), Routine())
     shown = demonstration()
-    assert [session.add(sample) for sample in shown] == [None] * SHOWN
+    assert [session.add(sample) for sample in shown] == [None] * SAMPLE_COUNT
     samples = salvage(closed_file(store))[1]
     session.finish()
     later.run()
@@ -65,7 +65,7 @@ def test_what_waits_to_be_completed_survives_the_process(store: Store) -> None:
 def test_takes_are_completed_in_their_order_and_counted_when_they_end(store: Store) -> None:
     session, finished = recorded_later(store, later := Later(), Routine(takes=3))
     for take in range(2):
-        for sample in demonstration(1 + take * SHOWN):
+        for sample in demonstration(1 + take * SAMPLE_COUNT):
             session.add(sample)
     assert session.status().takes_left == 1
     assert session.demonstrations == []
@@ -81,5 +81,5 @@ def test_a_take_that_cannot_be_kept_counts_no_more(store: Store) -> None:
     closed_file(store).unlink()  # so that it cannot be renamed
     session.finish()
     later.run()
-    assert (finished, session.status().takes_left, session.status().idle) == ([], 3, SHOWN)
+    assert (finished, session.status().takes_left, session.status().idle) == ([], 3, SAMPLE_COUNT)
     assert any("cannot be finished" in note for note in session.counter.statistics().notes)

@@ -10,16 +10,16 @@ from teachpath.records import Array, Demonstration, Trajectory
 from tests.contract.rows import demonstration
 from tests.waiting import HANG
 
-SHOWN = (0.0, 0.0, 0.3, 0.0, 0.0, 0.3)  # how far each demonstration swings out [m]
+SHOWN_SHARES = (0.0, 0.0, 0.3, 0.0, 0.0, 0.3)  # how far each demonstration swings out [m]
 
 
-def stored(count: int = len(SHOWN)) -> list[Demonstration]:
+def stored(count: int = len(SHOWN_SHARES)) -> list[Demonstration]:
     return [demonstration(f"d{i}", number=i + 1) for i in range(count)]
 
 
 def course(shown: Demonstration) -> Array:
     t = np.linspace(0.0, 1.0, 150)
-    swing = SHOWN[shown.number - 1] + 0.008 * np.sin(7.0 * shown.number)
+    swing = SHOWN_SHARES[shown.number - 1] + 0.008 * np.sin(7.0 * shown.number)
     return course_of(Trajectory(3.0 * t, np.column_stack([0.6 * t, swing * np.sin(np.pi * t), np.full(150, 0.5)])))
 
 

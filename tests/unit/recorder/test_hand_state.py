@@ -6,9 +6,9 @@ import pytest
 
 from teachpath.records import HandState, Phase, RecordingStatus
 from tests.unit.recorder.recorders import SCENE, Bench
-from tests.unit.recording.hands import CLOSED, OPEN, demonstration, sample
+from tests.unit.recording.hands import CLOSED_HAND, OPEN_HAND, demonstration, sample
 
-SHOWN = 110
+SAMPLE_COUNT = 110
 START = (0.5, 0.0, 0.48)
 
 
@@ -46,7 +46,7 @@ def test_the_object_is_in_the_hand_from_the_grasp_to_the_release(bench: Bench) -
             moved = hand.position[0] - 0.5
             assert hand.carried_pose[0] == pytest.approx((START[0] + moved, START[1], START[2]))
     bench.send(stream[60:])
-    bench.received(SHOWN)
+    bench.received(SAMPLE_COUNT)
     after = seen(bench)
     assert (shown(bench).phase, after.carried_pose, after.take) == (Phase.REACH, None, hand.take + 1)
 
@@ -54,8 +54,8 @@ def test_the_object_is_in_the_hand_from_the_grasp_to_the_release(bench: Bench) -
 def test_the_object_turns_with_the_hand_about_the_place_where_it_is_held(bench: Bench) -> None:
     bench.begin()
     quarter = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
-    bench.send([sample(1, (0.5, 0.05, 0.48), OPEN), sample(2, (0.5, 0.05, 0.48), CLOSED)])
-    bench.send([sample(3, (0.6, 0.05, 0.48), CLOSED, orientation=quarter)])
+    bench.send([sample(1, (0.5, 0.05, 0.48), OPEN_HAND), sample(2, (0.5, 0.05, 0.48), CLOSED_HAND)])
+    bench.send([sample(3, (0.6, 0.05, 0.48), CLOSED_HAND, orientation=quarter)])
     bench.received(3)
     carried = seen(bench).carried_pose
     assert carried is not None

@@ -17,7 +17,7 @@ from tests.unit.recording.hands import demonstration
 
 SETTINGS = RecordingSettings()
 PLACES: tuple[Vector, ...] = ((0.5, 0.0, 0.5), (0.3, -0.3, 0.5), (0.6, 0.25, 0.55))
-UNTURNED = (1.0, 0.0, 0.0, 0.0)
+IDENTITY_ORIENTATION = (1.0, 0.0, 0.0, 0.0)
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def start(store: Store, row: Demonstration) -> np.ndarray:
 
 
 def test_a_hand_may_grasp_where_the_object_was_told_to_lie_and_nowhere_else(store: Store) -> None:
-    centres = {1: ObjectPose((0.3, -0.3, 0.48), UNTURNED)}
+    centres = {1: ObjectPose((0.3, -0.3, 0.48), IDENTITY_ORIENTATION)}
     rows = recorded(store, at_grasp=False, reported=centres)
     assert [row.object_pose for row in rows] == [None, centres[1]]  # the third grasp is beside the object
     for row, centre in zip(rows, [(0.5, 0.0, 0.48), (0.3, -0.3, 0.48)], strict=True):

@@ -8,9 +8,9 @@ from teachpath.records import Sample, StopRequest
 from teachpath_proto import tracker_pb2
 from teachpath_proto.sample_rules import GRASP_BUTTON
 from tests.unit.recorder.recorders import KEYS, Bench
-from tests.unit.recording.hands import CLOSED, PERIOD_NS, START_NS, demonstration, sample
+from tests.unit.recording.hands import CLOSED_HAND, PERIOD_NS, START_NS, demonstration, sample
 
-SHOWN = 110  # samples of a demonstration
+SAMPLE_COUNT = 110  # samples of a demonstration
 
 
 def verdicts(bench: Bench) -> list[tuple[str, tuple[str, ...]]]:
@@ -27,21 +27,21 @@ def query(bench: Bench, key: str, tracker: str = "glove") -> tracker_pb2.Recordi
 
 def test_what_is_shown_while_paused_is_no_demonstration_and_no_loss(bench: Bench) -> None:
     bench.begin()
-    shown = [demonstration(1 + i * SHOWN) for i in range(3)]
+    shown = [demonstration(1 + i * SAMPLE_COUNT) for i in range(3)]
     bench.send(shown[0])
-    bench.received(SHOWN)
+    bench.received(SAMPLE_COUNT)
     assert query(bench, KEYS.recorder_pause).state == "paused"
     bench.send(shown[1])
-    bench.received(2 * SHOWN)
+    bench.received(2 * SAMPLE_COUNT)
     assert query(bench, KEYS.recorder_resume).state == "recording"
     bench.send(shown[2])
-    report = bench.end(3 * SHOWN)
-    assert (report.received, report.lost, len(report.demonstrations)) == (3 * SHOWN, 0, 2)
+    report = bench.end(3 * SAMPLE_COUNT)
+    assert (report.received, report.lost, len(report.demonstrations)) == (3 * SAMPLE_COUNT, 0, 2)
     first, second = bench.store.demonstrations("lift")
     assert (first.verdict, second.verdict) == ("clean", "clean")
     assert first.samples + second.samples + report.idle == report.received
     assert [d.statistics.received for d in (first, second)] == [first.samples, second.samples]
-    assert bench.store.recordings.samples(second.recording)[0].sequence > 2 * SHOWN
+    assert bench.store.recordings.samples(second.recording)[0].sequence > 2 * SAMPLE_COUNT
 
 
 def test_a_pause_while_something_is_carried_waits_for_the_end_of_the_take(bench: Bench) -> None:
@@ -54,7 +54,7 @@ def test_a_pause_while_something_is_carried_waits_for_the_end_of_the_take(bench:
     bench.send(shown[40:])
     assert bench.until(lambda report: report.state == "paused").demonstrations
     assert verdicts(bench) == [("clean", ())]
-    assert bench.end(SHOWN).received == SHOWN
+    assert bench.end(SAMPLE_COUNT).received == SAMPLE_COUNT
 
 
 def test_an_armed_recording_waits_for_the_pedal_and_the_pedal_pauses_again(bench: Bench) -> None:
@@ -63,11 +63,11 @@ def test_an_armed_recording_waits_for_the_pedal_and_the_pedal_pauses_again(bench
 
     bench.begin(armed=True)
     bench.send(demonstration())
-    assert bench.received(SHOWN).state == "paused"
-    bench.send(pressed(demonstration(SHOWN + 1)))
-    assert len(bench.received(2 * SHOWN).demonstrations) == 1
-    bench.send(pressed(demonstration(2 * SHOWN + 1)))
-    report = bench.received(3 * SHOWN)
+    assert bench.received(SAMPLE_COUNT).state == "paused"
+    bench.send(pressed(demonstration(SAMPLE_COUNT + 1)))
+    assert len(bench.received(2 * SAMPLE_COUNT).demonstrations) == 1
+    bench.send(pressed(demonstration(2 * SAMPLE_COUNT + 1)))
+    report = bench.received(3 * SAMPLE_COUNT)
     assert (report.state, report.pedal_used, len(report.demonstrations)) == ("paused", True, 1)
 
 
@@ -119,8 +119,8 @@ def test_a_tracker_that_comes_back_with_a_closed_hand_has_grasped_nothing(bench:
     token.close()
     bench.until(lambda report: report.state == "lost")
     bench.send(shown[22:])
-    bench.send(demonstration(SHOWN + 1))
-    report = bench.end(2 * SHOWN)
+    bench.send(demonstration(SAMPLE_COUNT + 1))
+    report = bench.end(2 * SAMPLE_COUNT)
     assert (report.lost, len(report.demonstrations)) == (0, 1)
 
 
@@ -133,8 +133,8 @@ def test_a_client_that_died_may_start_again_at_once_and_counts_anew(bench: Bench
     bench.bus.announce(KEYS.alive("tracker", "glove"))
     bench.begin()
     bench.send(demonstration())
-    report = bench.end(SHOWN)
-    assert (report.received, report.duplicated, len(report.demonstrations)) == (SHOWN, 0, 1)
+    report = bench.end(SAMPLE_COUNT)
+    assert (report.received, report.duplicated, len(report.demonstrations)) == (SAMPLE_COUNT, 0, 1)
     assert [verdict for verdict, _ in verdicts(bench)] == ["reject", "clean"]
 
 
@@ -145,8 +145,8 @@ def test_a_client_that_comes_back_within_its_recording_counts_anew(bench: Bench)
     token.close()
     bench.until(lambda report: report.state == "lost")
     bench.send([s._replace(device_ns=s.device_ns + 10**10) for s in demonstration()])
-    report = bench.end(SHOWN)
-    assert (report.received, report.duplicated, len(report.demonstrations)) == (SHOWN + 15, 0, 1)
+    report = bench.end(SAMPLE_COUNT)
+    assert (report.received, report.duplicated, len(report.demonstrations)) == (SAMPLE_COUNT + 15, 0, 1)
     assert verdicts(bench) == [("clean", ())]
     with pytest.raises(NotFound):
         bench.recorder.end(StopRequest("glove"))
@@ -170,11 +170,11 @@ def test_a_tracker_that_falls_silent_in_mid_take_ends_it(bench: Bench) -> None:
 def test_a_tracker_that_waits_between_takes_is_not_lost(bench: Bench) -> None:
     bench.begin()
     bench.send(demonstration())
-    bench.received(SHOWN)
+    bench.received(SAMPLE_COUNT)
     bench.now = 60.0
     bench.send(demonstration()[:1], "other")
-    bench.send(demonstration(SHOWN + 1))
-    assert len(bench.end(2 * SHOWN).demonstrations) == 2
+    bench.send(demonstration(SAMPLE_COUNT + 1))
+    assert len(bench.end(2 * SAMPLE_COUNT).demonstrations) == 2
 
 
 # hostile streams
@@ -184,7 +184,7 @@ def test_two_trackers_of_one_name_make_no_demonstration_that_is_trusted(bench: B
     bench.begin()
     for one, other in zip(demonstration(), demonstration(at=(0.6, 0.2, 0.7)), strict=True):
         bench.send([one, other._replace(device_ns=other.device_ns + 3_000_000)])
-    bench.end(SHOWN)
+    bench.end(SAMPLE_COUNT)
     assert [verdict for verdict, _ in verdicts(bench)] == ["reject"]
     assert any("two trackers" in note for note in bench.store.demonstrations("lift")[0].statistics.notes)
 
@@ -194,7 +194,7 @@ def test_samples_of_the_past_and_the_future_are_taken_with_their_offset(bench: B
     bench.begin()
     shown = [s._replace(device_ns=s.device_ns + away_ns) for s in demonstration()]
     bench.send(shown)
-    bench.end(SHOWN)
+    bench.end(SAMPLE_COUNT)
     (row,) = bench.store.demonstrations("lift")
     assert row.verdict == "clean"
     assert row.duration == pytest.approx(49 * 0.02)
@@ -203,7 +203,7 @@ def test_samples_of_the_past_and_the_future_are_taken_with_their_offset(bench: B
 def test_a_clock_that_jumps_in_mid_take_rejects_it(bench: Bench) -> None:
     bench.begin()
     bench.send([s._replace(device_ns=s.device_ns - 5 * 10**9 * (i >= 40)) for i, s in enumerate(demonstration())])
-    assert bench.end(SHOWN).clock_jumps == 1
+    assert bench.end(SAMPLE_COUNT).clock_jumps == 1
     assert verdicts(bench) == [("reject", ("the device's clock jumps once",))]
 
 
@@ -212,7 +212,7 @@ def test_positions_that_jump_are_left_out_of_what_is_learned(bench: Bench) -> No
     shown = demonstration(transport=60)
     shown[45] = shown[45]._replace(position=(0.0, 0.9, 0.9))
     bench.send(shown)
-    bench.end(SHOWN + 10)
+    bench.end(SAMPLE_COUNT + 10)
     (row,) = bench.store.demonstrations("lift")
     assert (row.verdict, row.reasons, row.left_out) == ("repaired", ("1 sample jumping",), (46,))
     (_, trajectory) = bench.recorded[0]
@@ -225,7 +225,7 @@ def test_positions_that_jump_are_left_out_of_what_is_learned(bench: Bench) -> No
 def test_the_declared_rate_is_held_against_the_seen_one(bench: Bench) -> None:
     bench.begin(rate=60.0)
     bench.send(demonstration())
-    report = bench.end(SHOWN)
+    report = bench.end(SAMPLE_COUNT)
     assert (report.declared_rate, report.seen_rate) == (60.0, pytest.approx(50.0))
     assert verdicts(bench) == [("repaired", ("the rate is 50 Hz, declared 60 Hz",))]
     for rate in (-1.0, float("nan"), 1e9):
@@ -238,14 +238,14 @@ def test_a_flood_of_names_is_not_remembered(bench: Bench) -> None:
     for i in range(3000):
         bench.bus.publish(KEYS.samples(f"flood-{i}"), b"")
     bench.send(demonstration())
-    bench.received(SHOWN)
+    bench.received(SAMPLE_COUNT)
     assert len(bench.recorder.trackers()) <= 1000
 
 
 def test_a_button_device_lost_in_mid_take_is_a_reject(bench: Bench) -> None:
     token = bench.bus.announce(KEYS.alive("tracker", "glove"))
     bench.begin()
-    held = [s._replace(flexions=(), buttons=GRASP_BUTTON * (s.flexions == CLOSED)) for s in demonstration()]
+    held = [s._replace(flexions=(), buttons=GRASP_BUTTON * (s.flexions == CLOSED_HAND)) for s in demonstration()]
     bench.send(held[:60])
     token.close()
     bench.until(lambda report: report.state == "lost")

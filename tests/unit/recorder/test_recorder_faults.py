@@ -16,7 +16,7 @@ from teachpath.io.store.store import Store
 from tests.unit.recorder.recorders import Bench
 from tests.unit.recording.hands import demonstration
 
-SHOWN = 110
+SAMPLE_COUNT = 110
 
 
 class Disk:
@@ -64,12 +64,12 @@ def kept(bench: Bench) -> dict[str, bytes]:
 
 
 def shown(take: int) -> list[Any]:
-    return demonstration(1 + (take - 1) * SHOWN)
+    return demonstration(1 + (take - 1) * SAMPLE_COUNT)
 
 
 def show(bench: Bench, take: int) -> None:
     bench.send(shown(take))
-    bench.received(take * SHOWN)
+    bench.received(take * SAMPLE_COUNT)
 
 
 @pytest.mark.parametrize("room", [0, 100, 2_000, 5_000])
@@ -91,7 +91,7 @@ def test_a_disk_that_is_full_is_said_and_harms_no_earlier_take(bench: Bench, dis
     bench.until(lambda _: not bench.recorder.faults())
     show(bench, 3)
     assert [d.verdict for d in bench.store.demonstrations("lift")] == ["clean", "clean"]
-    assert bench.end(3 * SHOWN).received == 3 * SHOWN
+    assert bench.end(3 * SAMPLE_COUNT).received == 3 * SAMPLE_COUNT
 
 
 def test_what_was_written_before_the_disk_was_full_is_left_for_the_doctor(bench: Bench, disk: Disk) -> None:
@@ -103,7 +103,7 @@ def test_what_was_written_before_the_disk_was_full_is_left_for_the_doctor(bench:
     bench.received(52)
     disk.room = 0
     bench.send(shown(1)[52:])
-    bench.end(SHOWN)
+    bench.end(SAMPLE_COUNT)
     (torn,) = bench.store.recordings.unfinished()
     header, samples, _ = salvage(torn)
     assert header is not None
@@ -119,12 +119,12 @@ def test_while_nothing_can_be_written_the_station_says_so(bench: Bench, disk: Di
     assert fault.startswith("glove: the recording cannot be written: Read-only file system; free space or mend")
     disk.fault = 0
     bench.send(shown(1)[40:])
-    bench.received(SHOWN)
+    bench.received(SAMPLE_COUNT)
     assert bench.recorder.faults() == []
     assert any("a demonstration was lost" in note for note in bench.until(lambda report: True).notes)
     assert any("of lift by glove was not kept: its file could not" in said for said in bench.store.health.faults())
     show(bench, 2)
-    assert len(bench.end(2 * SHOWN).demonstrations) == 1
+    assert len(bench.end(2 * SAMPLE_COUNT).demonstrations) == 1
 
 
 def test_a_take_of_another_tracker_is_untouched_by_one_that_fails(bench: Bench, disk: Disk) -> None:
@@ -134,10 +134,10 @@ def test_a_take_of_another_tracker_is_untouched_by_one_that_fails(bench: Bench, 
     bench.received(30, "left")
     disk.fault = errno.EACCES
     bench.send(shown(1), "right")
-    bench.received(SHOWN, "right")
+    bench.received(SAMPLE_COUNT, "right")
     bench.send(shown(1)[30:], "left")
-    assert bench.end(SHOWN, "right").demonstrations == []
-    assert len(bench.end(SHOWN, "left").demonstrations) == 1
+    assert bench.end(SAMPLE_COUNT, "right").demonstrations == []
+    assert len(bench.end(SAMPLE_COUNT, "left").demonstrations) == 1
     assert [d.verdict for d in bench.store.demonstrations("a")] == ["clean"]
 
 
@@ -149,6 +149,6 @@ def test_a_viewer_that_fails_does_not_end_the_recorder(store: Store) -> None:
     try:
         bench.begin()
         bench.send(shown(1) + shown(2))
-        assert len(bench.end(2 * SHOWN).demonstrations) == 2
+        assert len(bench.end(2 * SAMPLE_COUNT).demonstrations) == 2
     finally:
         bench.recorder.stop()

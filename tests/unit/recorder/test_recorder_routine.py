@@ -7,19 +7,19 @@ from teachpath.records import Sample
 from tests.unit.recorder.recorders import Bench
 from tests.unit.recording.hands import demonstration, sample
 
-SHOWN = 110  # samples of a demonstration
-AWAY = (0.2, 0.5, 0.5)
+SAMPLE_COUNT = 110  # samples of a demonstration
+OTHER_PLACE = (0.2, 0.5, 0.5)
 
 
 def show(bench: Bench, take: int) -> None:
-    bench.send(demonstration(1 + (take - 1) * SHOWN))
-    bench.received(take * SHOWN)
+    bench.send(demonstration(1 + (take - 1) * SAMPLE_COUNT))
+    bench.received(take * SAMPLE_COUNT)
 
 
 def fist(first: int, seconds: float) -> list[Sample]:
     held = round(seconds * 50)
     flexions = [(0.1,) * 22] * 10 + [(0.95,) * 22] * held + [(0.1,) * 22] * 20
-    return [sample(first + i, AWAY, f) for i, f in enumerate(flexions)]
+    return [sample(first + i, OTHER_PLACE, f) for i, f in enumerate(flexions)]
 
 
 def test_the_countdown_is_told_and_what_is_shown_meanwhile_is_not_recorded(bench: Bench) -> None:
@@ -34,7 +34,7 @@ def test_the_countdown_is_told_and_what_is_shown_meanwhile_is_not_recorded(bench
     assert (report.state, report.countdown_left) == ("countdown", 3.0)  # of the next take, hands-free
     bench.now = 6.0
     show(bench, 3)
-    assert len(bench.end(3 * SHOWN).demonstrations) == 2
+    assert len(bench.end(3 * SAMPLE_COUNT).demonstrations) == 2
     assert [d.verdict for d in bench.store.demonstrations("lift")] == ["clean", "clean"]
 
 
@@ -48,7 +48,7 @@ def test_a_series_pauses_by_itself_and_resuming_begins_another(bench: Bench) -> 
     assert (report.takes_left, len(report.demonstrations)) == (0, 2)
     assert bench.recorder.resume("glove").takes_left == 2
     show(bench, 4)
-    assert len(bench.end(4 * SHOWN).demonstrations) == 3
+    assert len(bench.end(4 * SAMPLE_COUNT).demonstrations) == 3
 
 
 def test_one_by_one_waits_for_the_operator(bench: Bench) -> None:
@@ -57,7 +57,7 @@ def test_one_by_one_waits_for_the_operator(bench: Bench) -> None:
     assert bench.until(lambda report: True).state == "paused"
     bench.recorder.resume("glove")
     show(bench, 2)
-    assert len(bench.end(2 * SHOWN).demonstrations) == 2
+    assert len(bench.end(2 * SAMPLE_COUNT).demonstrations) == 2
 
 
 def test_a_countdown_without_an_end_is_refused(bench: Bench) -> None:
@@ -73,7 +73,7 @@ def test_a_fist_begins_and_pauses_an_armed_recording(bench: Bench) -> None:
     assert bench.received(len(sign)).state == "recording"
     again = [sample(s.sequence + len(sign), s.position, s.flexions) for s in demonstration()]
     bench.send(again)
-    after = len(sign) + SHOWN
+    after = len(sign) + SAMPLE_COUNT
     assert len(bench.received(after).demonstrations) == 1
     second = fist(after + 1, 1.2)
     bench.send(second[:-20])
@@ -87,9 +87,9 @@ def test_a_fist_held_longer_discards_the_last_demonstration_and_once(bench: Benc
     bench.begin()
     show(bench, 1)
     show(bench, 2)
-    sign = fist(2 * SHOWN + 1, 3.5)
+    sign = fist(2 * SAMPLE_COUNT + 1, 3.5)
     bench.send(sign)
-    bench.end(2 * SHOWN + len(sign))
+    bench.end(2 * SAMPLE_COUNT + len(sign))
     first, second = bench.store.demonstrations("lift")
     assert not first.discarded_ns
     assert second.discarded_ns

@@ -15,9 +15,9 @@ from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import START_NS, demonstration
 from tests.waiting import wait_until
 
-SHOWN = 110
-GRASPED, RELEASED = 20, 70  # of the take that is shown, as indices
-MISSED = 15  # samples that the tracker sends while no service runs
+SAMPLE_COUNT = 110
+GRASP_SAMPLE, RELEASE_SAMPLE = 20, 70  # of the take that is shown, as indices
+MISSED_SAMPLES = 15  # samples that the tracker sends while no service runs
 
 
 @pytest.fixture
@@ -53,17 +53,20 @@ def endings(bench: Bench) -> list[str]:
     return sorted("".join(f.suffixes) for f in bench.store.recordings.folder("lift").parent.rglob("*") if f.is_file())
 
 
-@pytest.mark.parametrize("stop", [0, 12, GRASPED, GRASPED + 1, RELEASED - MISSED, RELEASED - 1, RELEASED + 1])
+@pytest.mark.parametrize(
+    "stop",
+    [0, 12, GRASP_SAMPLE, GRASP_SAMPLE + 1, RELEASE_SAMPLE - MISSED_SAMPLES, RELEASE_SAMPLE - 1, RELEASE_SAMPLE + 1],
+)
 def test_a_take_that_a_restart_interrupts_is_what_it_would_have_been(bench: Bench, stop: int) -> None:
-    stream, on = demonstration(), stop + MISSED
+    stream, on = demonstration(), stop + MISSED_SAMPLES
     announce(bench)
     bench.send(stream[:stop])
     with restarted(bench, stream[stop:on]) as after:
         after.send(stream[on:])
-        assert len(after.end(SHOWN).demonstrations) == 1
+        assert len(after.end(SAMPLE_COUNT).demonstrations) == 1
         after.begin(task="whole")
-        after.send(demonstration(SHOWN + 1))
-        after.end(2 * SHOWN)
+        after.send(demonstration(SAMPLE_COUNT + 1))
+        after.end(2 * SAMPLE_COUNT)
         (made,), (whole,) = after.store.demonstrations("lift"), after.store.demonstrations("whole")
         assert made.verdict == whole.verdict == "clean"
         assert (made.statistics.lost, made.statistics.duplicated, made.statistics.reordered) == (0, 0, 0)
@@ -72,14 +75,14 @@ def test_a_take_that_a_restart_interrupts_is_what_it_would_have_been(bench: Benc
 
 
 def test_what_nobody_has_kept_is_lost_and_said(bench: Bench) -> None:
-    stream, stop = demonstration(), GRASPED + 5
+    stream, stop = demonstration(), GRASP_SAMPLE + 5
     announce(bench)
     bench.send(stream[:stop])
     with restarted(bench) as after:
-        after.send(stream[stop + MISSED :])
-        after.end(SHOWN)
+        after.send(stream[stop + MISSED_SAMPLES :])
+        after.end(SAMPLE_COUNT)
         (made,) = after.store.demonstrations("lift")
-        assert (made.verdict, made.statistics.lost) == ("reject", MISSED)
+        assert (made.verdict, made.statistics.lost) == ("reject", MISSED_SAMPLES)
 
 
 def test_two_restarts_in_one_take_lose_nothing_either(bench: Bench) -> None:
@@ -90,7 +93,7 @@ def test_two_restarts_in_one_take_lose_nothing_either(bench: Bench) -> None:
         first.send(stream[40:45])
         with restarted(first, stream[45:55]) as second:
             second.send(stream[55:])
-            assert len(second.end(SHOWN).demonstrations) == 1
+            assert len(second.end(SAMPLE_COUNT).demonstrations) == 1
             (made,) = second.store.demonstrations("lift")
             assert (made.verdict, made.statistics.lost) == ("clean", 0)
 
@@ -134,7 +137,7 @@ def test_routine_pause_and_demonstrations_outlast_the_stop(store: Store) -> None
     announce(bench)
     bench.begin(takes=3, one_by_one=True)
     bench.send(demonstration())
-    before = bench.received(SHOWN)
+    before = bench.received(SAMPLE_COUNT)
     with restarted(bench) as after:
         (report,) = after.reports()
         assert (report.state, report.takes_left) == (before.state, before.takes_left) == ("paused", 2)
@@ -152,7 +155,7 @@ def test_a_start_that_is_broken_off_loses_and_doubles_nothing(bench: Bench, tmp_
     shutil.copytree(tmp_path / "left", folder, dirs_exist_ok=True)  # and removed nothing yet
     with restarted(bench, stream[40:60]) as after:
         after.send(stream[60:])
-        assert len(after.end(SHOWN).demonstrations) == 1
+        assert len(after.end(SAMPLE_COUNT).demonstrations) == 1
         assert endings(after) == [".mcap"]
         assert after.store.demonstrations("lift")[0].verdict == "clean"
 

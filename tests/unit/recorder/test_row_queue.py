@@ -14,7 +14,7 @@ from tests.unit.recorder.recorders import Bench
 from tests.unit.recording.hands import demonstration
 from tests.waiting import wait_until
 
-SHOWN = 110  # samples of a demonstration
+SAMPLE_COUNT = 110  # samples of a demonstration
 
 
 class CutStore(Store):
@@ -53,8 +53,8 @@ def bench(store: CutStore) -> Iterator[Bench]:
 
 
 def show(bench: Bench, take: int) -> None:
-    bench.send(demonstration(1 + (take - 1) * SHOWN))
-    bench.received(take * SHOWN)
+    bench.send(demonstration(1 + (take - 1) * SAMPLE_COUNT))
+    bench.received(take * SAMPLE_COUNT)
 
 
 def stored(store: Store) -> list[tuple[int, str]]:
@@ -146,7 +146,7 @@ def test_the_newest_take_is_discarded_also_while_its_row_waits(store: CutStore, 
 def test_a_task_is_kept_idle_only_when_its_rows_are_stored(store: CutStore, bench: Bench) -> None:
     store.is_cut = True
     show(bench, 1)
-    bench.end(SHOWN)
+    bench.end(SAMPLE_COUNT)
     with pytest.raises(Conflict, match="takes of task lift wait for their rows: the database is away"):
         bench.recorder.kept_idle("lift").__enter__()
     store.is_cut = False

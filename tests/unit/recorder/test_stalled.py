@@ -15,16 +15,16 @@ from tests.unit.recorder.recorders import KEYS, Bench
 from tests.unit.recording.hands import demonstration
 from tests.waiting import HANG
 
-SHOWN = 110
+SAMPLE_COUNT = 110
 TAKES = 8
 
 
 def record(bench: Bench) -> None:
     bench.begin()
     for pop in range(TAKES):
-        bench.send(demonstration(1 + pop * SHOWN))
-    report = bench.end(TAKES * SHOWN)
-    assert (report.received, report.lost, len(report.demonstrations)) == (TAKES * SHOWN, 0, TAKES)
+        bench.send(demonstration(1 + pop * SAMPLE_COUNT))
+    report = bench.end(TAKES * SAMPLE_COUNT)
+    assert (report.received, report.lost, len(report.demonstrations)) == (TAKES * SAMPLE_COUNT, 0, TAKES)
 
 
 def test_a_page_that_sleeps_does_not_delay_the_recorder(bench: Bench) -> None:
@@ -79,11 +79,11 @@ def test_a_take_that_takes_long_to_complete_delays_no_sample(store: object) -> N
         bench.send(demonstration(), "slow")
         assert asked.wait(HANG)
         bench.send(demonstration(), "glove")
-        bench.send(demonstration(1 + SHOWN), "slow")
-        assert len(bench.end(SHOWN, "glove").demonstrations) == 1
-        bench.until(lambda report: report.received == 2 * SHOWN, "slow", settled=False)
+        bench.send(demonstration(1 + SAMPLE_COUNT), "slow")
+        assert len(bench.end(SAMPLE_COUNT, "glove").demonstrations) == 1
+        bench.until(lambda report: report.received == 2 * SAMPLE_COUNT, "slow", settled=False)
         go_on.set()
-        assert len(bench.end(2 * SHOWN, "slow").demonstrations) == 2
+        assert len(bench.end(2 * SAMPLE_COUNT, "slow").demonstrations) == 2
     finally:
         go_on.set()
         bench.recorder.stop()

@@ -14,8 +14,8 @@ from tests.faults.faults import FAULTS, Fault, delay, double, drop, refuse, swap
 from tests.faults.routes import ROUTES, run, run_all
 from tests.faults.streams import Stream, any_hand, shown
 
-COMPOSED = (drop, delay, swap, swap_first, double, refuse, untrack)
-TRIED = [
+COMPOSED_FAULTS = (drop, delay, swap, swap_first, double, refuse, untrack)
+FAULT_CASES = [
     pytest.param(fault, strength, id=f"{fault.key} {strength:g}") for fault in FAULTS for strength in fault.strengths
 ]
 
@@ -28,7 +28,7 @@ def faulty(fault: Fault, strength: float, seed: int) -> Stream:
 @settings(max_examples=60)
 @given(
     seed=st.integers(0, 100_000),
-    chosen=st.lists(st.tuples(st.sampled_from(COMPOSED), st.integers(1, 30)), min_size=1, max_size=5),
+    chosen=st.lists(st.tuples(st.sampled_from(COMPOSED_FAULTS), st.integers(1, 30)), min_size=1, max_size=5),
 )
 def test_all_that_was_sent_is_accounted_for_whatever_befell_it(seed: int, chosen: list) -> None:  # type: ignore[type-arg]
     random = np.random.default_rng(seed)
@@ -49,7 +49,7 @@ def test_all_that_was_sent_is_accounted_for_whatever_befell_it(seed: int, chosen
     )
 
 
-@pytest.mark.parametrize(("fault", "strength"), TRIED)
+@pytest.mark.parametrize(("fault", "strength"), FAULT_CASES)
 def test_no_fault_over_its_limit_is_clean_and_all_routes_agree(fault: Fault, strength: float) -> None:
     stream = faulty(fault, strength, 1)
     live = run(stream, "live")

@@ -12,8 +12,8 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import StreamStatistics, Verdict
 
 SETTINGS = RecordingSettings()
-SOUND = StreamStatistics(received=200)
-FATAL = {
+SOUND_STATISTICS = StreamStatistics(received=200)
+FATAL_STATISTICS = {
     **dict.fromkeys(FAULTS, 40),
     "longest_gap_ns": 10**9,
     "level_shifts": 1,
@@ -31,26 +31,26 @@ def advice(statistics: StreamStatistics) -> tuple[Verdict, str]:
 
 
 def test_each_fatal_fault_has_an_advice_of_its_own_and_says_what_to_do() -> None:
-    assert set(FATAL) <= {field.name for field in fields(StreamStatistics)}
-    said = {name: advice(replace(SOUND, **{name: value})) for name, value in FATAL.items()}
+    assert set(FATAL_STATISTICS) <= {field.name for field in fields(StreamStatistics)}
+    said = {name: advice(replace(SOUND_STATISTICS, **{name: value})) for name, value in FATAL_STATISTICS.items()}
     assert {verdict for verdict, _ in said.values()} == {Verdict.REJECT}
-    assert len({sentence for _, sentence in said.values()}) == len(FATAL)
+    assert len({sentence for _, sentence in said.values()}) == len(FATAL_STATISTICS)
     for name, (_, sentence) in said.items():
         assert RETAKE in sentence, name
         assert not re.search(r"%|limit|samples?\b", sentence), sentence
 
 
-@pytest.mark.parametrize("name", FATAL)
+@pytest.mark.parametrize("name", FATAL_STATISTICS)
 def test_with_a_second_fault_the_advice_is_still_about_one_of_the_two(name: str) -> None:
-    alone = {other: advice(replace(SOUND, **{other: value}))[1] for other, value in FATAL.items()}
-    for other, value in FATAL.items():
-        both = advice(replace(SOUND, **{name: FATAL[name], other: value}))[1]
+    alone = {other: advice(replace(SOUND_STATISTICS, **{other: value}))[1] for other, value in FATAL_STATISTICS.items()}
+    for other, value in FATAL_STATISTICS.items():
+        both = advice(replace(SOUND_STATISTICS, **{name: FATAL_STATISTICS[name], other: value}))[1]
         assert both in (alone[name], alone[other])
 
 
 def test_what_is_clean_needs_none_and_what_is_usable_says_so() -> None:
-    assert advice(SOUND) == (Verdict.CLEAN, "")
-    verdict, sentence = advice(replace(SOUND, lost=1))
+    assert advice(SOUND_STATISTICS) == (Verdict.CLEAN, "")
+    verdict, sentence = advice(replace(SOUND_STATISTICS, lost=1))
     assert verdict is Verdict.REPAIRED
     assert sentence.startswith("usable")
 

@@ -10,14 +10,14 @@ from tests.unit.recording.hands import demonstration
 
 CUT = TransportSpan(20, 70)
 IDENTITY = Calibration("identity")
-CARRIED = (0.5, 0.0, 0.48)
+CARRIED_FROM = (0.5, 0.0, 0.48)
 
 
 def test_the_object_starts_where_it_stands_and_keeps_its_place_in_the_hand() -> None:
     samples = demonstration()
-    trajectory = object_trajectory(samples, CUT, IDENTITY, CARRIED)
+    trajectory = object_trajectory(samples, CUT, IDENTITY, CARRIED_FROM)
     hand = np.array([s.position for s in samples[20:70]])
-    assert np.allclose(trajectory.positions[0], CARRIED, atol=1e-15)
+    assert np.allclose(trajectory.positions[0], CARRIED_FROM, atol=1e-15)
     assert np.allclose(trajectory.positions - hand, trajectory.positions[0] - hand[0], atol=1e-12)
     assert np.all(np.diff(trajectory.times) > 0)
 
@@ -36,8 +36,8 @@ def test_turning_the_hand_swings_the_object_about_it() -> None:
 def test_late_samples_are_put_back_and_duplicates_left_out() -> None:
     samples = demonstration()
     shuffled = [*samples[:30], samples[31], samples[30], samples[31], *samples[32:]]
-    straight = object_trajectory(samples, CUT, IDENTITY, CARRIED)
-    again = object_trajectory(shuffled, TransportSpan(20, 71), IDENTITY, CARRIED)
+    straight = object_trajectory(samples, CUT, IDENTITY, CARRIED_FROM)
+    again = object_trajectory(shuffled, TransportSpan(20, 71), IDENTITY, CARRIED_FROM)
     assert np.array_equal(straight.positions, again.positions)
     assert np.array_equal(straight.times, again.times)
 

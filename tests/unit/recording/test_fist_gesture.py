@@ -11,7 +11,7 @@ from teachpath.records import FistCommand, Sample, Vector
 from tests.unit.recording.hands import demonstration, sample
 
 OBJECT = (0.5, 0.0, 0.5)
-AWAY = (0.2, 0.4, 0.5)
+OTHER_PLACE = (0.2, 0.4, 0.5)
 RATE = 50
 
 Signs = list[FistCommand | None]
@@ -23,7 +23,7 @@ def signs(stream: list[Sample], *, carrying: bool = False) -> list[FistCommand]:
     return [sign for sign in given if sign is not None]
 
 
-def fist(seconds: float, *, at: Callable[[int], Vector] = lambda i: AWAY, noise: float = 0.0) -> list[Sample]:
+def fist(seconds: float, *, at: Callable[[int], Vector] = lambda i: OTHER_PLACE, noise: float = 0.0) -> list[Sample]:
     """Open for a second, a fist for `seconds`, open for a second."""
     random = np.random.default_rng(7)
     closures = [0.1] * RATE + [0.92] * round(seconds * RATE) + [0.1] * RATE
@@ -52,13 +52,13 @@ def test_a_fist_says_what_it_was_held_for_and_nothing_when_it_rests(
 def test_fingers_that_flicker_are_one_fist() -> None:
     stream = fist(1.5)
     for i in (70, 71, 90):
-        stream[i] = sample(stream[i].sequence, AWAY, (0.1,) * 22)
+        stream[i] = sample(stream[i].sequence, OTHER_PLACE, (0.1,) * 22)
     assert signs(stream) == [FistCommand.TOGGLE]
 
 
 def test_two_fists_are_two_signs() -> None:
     first = fist(1.2)
-    second = [sample(s.sequence + len(first), AWAY, s.flexions) for s in fist(1.2)]
+    second = [sample(s.sequence + len(first), OTHER_PLACE, s.flexions) for s in fist(1.2)]
     assert signs(first + second) == [FistCommand.TOGGLE, FistCommand.TOGGLE]
 
 
@@ -83,14 +83,14 @@ def test_without_a_glove_or_an_object_there_are_no_signs() -> None:
     off = FistGesture(RecordingSettings(fist_time=0.0), OBJECT)
     assert not any(off.push(s, s.position, carrying=False) for s in stream)
     bare = FistGesture(RecordingSettings(), OBJECT)
-    assert not any(bare.push(sample(i, AWAY, ()), AWAY, carrying=False) for i in range(200))
+    assert not any(bare.push(sample(i, OTHER_PLACE, ()), OTHER_PLACE, carrying=False) for i in range(200))
 
 
 def test_what_opening_would_ask_for_is_offered_while_the_fist_is_held() -> None:
     gesture = FistGesture(RecordingSettings(), OBJECT)
     pending_command: Signs = []
     for s in fist(7.0):
-        gesture.push(s, AWAY, carrying=False)
+        gesture.push(s, OTHER_PLACE, carrying=False)
         if not pending_command or pending_command[-1] is not gesture.pending_command:
             pending_command.append(gesture.pending_command)
     assert pending_command == [None, FistCommand.TOGGLE, FistCommand.DISCARD, None]

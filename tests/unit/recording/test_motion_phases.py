@@ -7,7 +7,7 @@ from teachpath.recording.motion_phases import MotionPhases, PhaseEvidence, find_
 from teachpath.records import Array
 
 RATE = 100.0  # [Hz]
-FAR = 0.05  # [m] from the true place; nothing that is called sure may lie farther
+FAR_DISTANCE = 0.05  # [m] from the true place; nothing that is called sure may lie farther
 SEEDS = range(12)
 Motion = tuple[Array, Array]  # positions (n, 3) [m], and the true places (2, 3)
 
@@ -69,7 +69,7 @@ def test_what_is_called_sure_is_near_the_true_places(change: str) -> None:
             continue
         sure += 1
         if change != "another frame and unit":
-            assert np.linalg.norm(changed.places - places, axis=1).max() < FAR
+            assert np.linalg.norm(changed.places - places, axis=1).max() < FAR_DISTANCE
         else:
             plain = found(positions)
             assert (changed.grasp, changed.release) == (plain.grasp, plain.release)
@@ -81,7 +81,7 @@ def test_the_readings_chosen_are_those_at_the_places() -> None:
         positions, places = pick_and_place(np.random.default_rng([seed, 3]))
         phases = found(positions)
         at = positions[[phases.grasp, phases.release - 1]]
-        assert np.linalg.norm(at - places, axis=1).max() < FAR
+        assert np.linalg.norm(at - places, axis=1).max() < FAR_DISTANCE
 
 
 @pytest.mark.parametrize("dwell", [0.05, 0.4, 3.0])
@@ -90,7 +90,7 @@ def test_a_rest_at_a_place_is_one_dwell_however_long(dwell: float) -> None:
         positions, places = pick_and_place(np.random.default_rng([seed, 5]), dwell=dwell)
         phases = found(positions)
         assert phases.evidence is PhaseEvidence.DWELLS
-        assert np.linalg.norm(phases.places - places, axis=1).max() < FAR
+        assert np.linalg.norm(phases.places - places, axis=1).max() < FAR_DISTANCE
 
 
 @pytest.mark.parametrize("pause", [0.3, 1.0])

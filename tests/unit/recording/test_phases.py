@@ -5,7 +5,7 @@ from teachpath.recording.phases import Segmenter, TransportSpan
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Phase, Sample
 from teachpath_proto.sample_rules import GRASP_BUTTON
-from tests.unit.recording.hands import CLOSED, OPEN, demonstration, sample
+from tests.unit.recording.hands import CLOSED_HAND, OPEN_HAND, demonstration, sample
 
 OBJECT = (0.5, 0.0, 0.5)
 
@@ -41,7 +41,7 @@ def test_noise_between_the_thresholds_changes_nothing() -> None:
 
 
 def test_a_button_grasps_like_a_glove() -> None:
-    held = [s._replace(flexions=(), buttons=GRASP_BUTTON if s.flexions == CLOSED else 0) for s in demonstration()]
+    held = [s._replace(flexions=(), buttons=GRASP_BUTTON if s.flexions == CLOSED_HAND else 0) for s in demonstration()]
     assert [(c.grasp, c.release) for c in cuts_of(held)] == [(20, 70)]
 
 
@@ -56,7 +56,7 @@ def test_the_end_of_the_stream_completes_what_was_released_and_marks_what_was_no
 
 def test_a_hand_that_never_rests_still_ends_its_demonstration() -> None:
     stream = demonstration()[:75]
-    moving = [sample(stream[-1].sequence + i, (0.02 * i, 0.0, 0.5), OPEN) for i in range(1, 400)]
+    moving = [sample(stream[-1].sequence + i, (0.02 * i, 0.0, 0.5), OPEN_HAND) for i in range(1, 400)]
     segmenter = Segmenter(RecordingSettings(longest_return=3.0), OBJECT)
     ended = [i for i, s in enumerate(stream + moving) if segmenter.push(s, np.array(s.position))]
     assert ended == [pytest.approx(70 + 3.0 * 50, abs=2)]

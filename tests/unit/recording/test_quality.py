@@ -9,7 +9,7 @@ from teachpath.recording.settings import RecordingSettings
 from teachpath.records import StreamStatistics
 
 SETTINGS = RecordingSettings()
-CLEAN = StreamStatistics(received=100, declared_rate=50.0, seen_rate=50.0)
+CLEAN_STATISTICS = StreamStatistics(received=100, declared_rate=50.0, seen_rate=50.0)
 
 
 def transport(statistics: StreamStatistics) -> PhaseStatistics:
@@ -59,7 +59,7 @@ def transport(statistics: StreamStatistics) -> PhaseStatistics:
     ],
 )
 def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], word: str, reason: str) -> None:
-    report = assess_quality(transport(replace(CLEAN, **changes)), SETTINGS)  # type: ignore[arg-type]
+    report = assess_quality(transport(replace(CLEAN_STATISTICS, **changes)), SETTINGS)  # type: ignore[arg-type]
     assert report.verdict == word
     assert reason in (report.reasons[0] if report.reasons else "")
     assert bool(report.reasons) == (word != "clean")
@@ -68,7 +68,7 @@ def test_the_verdict_follows_the_numbers_and_says_them(changes: dict[str, int], 
 def test_the_limits_are_those_of_the_settings() -> None:
     lost = StreamStatistics(received=90, lost=10)
     assert assess_quality(transport(lost), replace(SETTINGS, largest_loss=0.1)).verdict == "repaired"
-    gap = transport(replace(CLEAN, longest_gap_ns=300_000_000))
+    gap = transport(replace(CLEAN_STATISTICS, longest_gap_ns=300_000_000))
     assert assess_quality(gap, replace(SETTINGS, longest_gap=0.3)).verdict == "clean"
 
 

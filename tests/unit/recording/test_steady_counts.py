@@ -10,9 +10,9 @@ from teachpath.recording.stream_statistics import StreamCounter
 from teachpath.records import Sample, StreamStatistics
 from tests.unit.recording.hands import sample
 
-SENT = 120
+SAMPLE_COUNT = 120
 LARGEST_STEP = 0.1  # [s] five periods
-PLACES = st.sets(st.integers(0, SENT - 1))
+PLACES = st.sets(st.integers(0, SAMPLE_COUNT - 1))
 NAMES = ("received", "lost", "gaps", "untracked", "longest_gap_ns", "clock_jumps")
 
 
@@ -26,13 +26,19 @@ def one_by_one(samples: list[Sample], borders: list[int]) -> list[StreamStatisti
     return [*parts, counter.interval()]
 
 
-@given(lost=PLACES, untracked=PLACES, first=st.integers(0, 2**63), begin=st.integers(0, SENT), end=st.integers(0, SENT))
+@given(
+    lost=PLACES,
+    untracked=PLACES,
+    first=st.integers(0, 2**63),
+    begin=st.integers(0, SAMPLE_COUNT),
+    end=st.integers(0, SAMPLE_COUNT),
+)
 def test_columns_count_what_samples_count(
     lost: set[int], untracked: set[int], first: int, begin: int, end: int
 ) -> None:
     samples = [
         sample(n, (0.0, 0.0, 0.0))._replace(sequence=first + n, tracked=n not in untracked)
-        for n in range(SENT)
+        for n in range(SAMPLE_COUNT)
         if n not in lost
     ]
     borders = [first + min(begin, end), first + max(begin, end)]

@@ -79,21 +79,21 @@ def test_the_seen_rate_is_that_of_the_device_and_loss_does_not_lower_it() -> Non
     assert counter_of([1, 2, 3, 8, 9]).statistics().seen_rate == pytest.approx(50.0)
 
 
-AT = START_NS + 3 * PERIOD_NS
+STAMP_NS = START_NS + 3 * PERIOD_NS
 
 
 @pytest.mark.parametrize(
     ("device_ns", "receive_ns", "jumps"),
     [
-        (AT, AT + 1_000_000, 0),
-        (AT + 5 * 10**9, AT + 5 * 10**9, 0),  # both clocks waited: a gap, not a jump
-        (AT + 3600 * 10**9, AT + 1_000_000, 1),
-        (AT - 10**9, AT + 1_000_000, 1),
-        (AT + 2 * 10**8, AT + 1_000_000, 1),  # the clock is set ahead by 0.2 s
-        (AT + 5 * 10**7, AT + 1_000_000, 0),  # by less than the limit
-        (AT - 3 * 10**7, AT + 1_000_000, 1),  # it runs back
-        (AT, AT + 3 * 10**9, 0),  # a slow transit
-        (AT, AT - 10**9, 0),  # our own clock was set back
+        (STAMP_NS, STAMP_NS + 1_000_000, 0),
+        (STAMP_NS + 5 * 10**9, STAMP_NS + 5 * 10**9, 0),  # both clocks waited: a gap, not a jump
+        (STAMP_NS + 3600 * 10**9, STAMP_NS + 1_000_000, 1),
+        (STAMP_NS - 10**9, STAMP_NS + 1_000_000, 1),
+        (STAMP_NS + 2 * 10**8, STAMP_NS + 1_000_000, 1),  # the clock is set ahead by 0.2 s
+        (STAMP_NS + 5 * 10**7, STAMP_NS + 1_000_000, 0),  # by less than the limit
+        (STAMP_NS - 3 * 10**7, STAMP_NS + 1_000_000, 1),  # it runs back
+        (STAMP_NS, STAMP_NS + 3 * 10**9, 0),  # a slow transit
+        (STAMP_NS, STAMP_NS - 10**9, 0),  # our own clock was set back
     ],
 )
 def test_a_clock_jump_is_what_neither_the_numbers_nor_our_clock_explain(
@@ -102,7 +102,7 @@ def test_a_clock_jump_is_what_neither_the_numbers_nor_our_clock_explain(
     statistics = stream({}, {}, {"device_ns": device_ns, "receive_ns": receive_ns}).statistics()
     assert statistics.clock_jumps == jumps
     assert any("clock jumps" in note for note in statistics.notes) == bool(jumps)
-    assert statistics.longest_gap_ns == (PERIOD_NS if jumps else max(device_ns - AT, 0) + PERIOD_NS)
+    assert statistics.longest_gap_ns == (PERIOD_NS if jumps else max(device_ns - STAMP_NS, 0) + PERIOD_NS)
 
 
 def test_loss_at_many_times_real_time_is_no_clock_jump() -> None:
@@ -170,8 +170,8 @@ def test_the_parts_of_a_stream_add_up_but_for_what_was_lost_between_them() -> No
 
 
 def test_a_pause_behind_a_slow_transit_is_no_clock_jump() -> None:
-    delayed = {"receive_ns": AT + 300_000_000}  # the machine stood still: this one came with the next
-    after = {"device_ns": AT + 300_000_000, "receive_ns": AT + 301_000_000}
+    delayed = {"receive_ns": STAMP_NS + 300_000_000}  # the machine stood still: this one came with the next
+    after = {"device_ns": STAMP_NS + 300_000_000, "receive_ns": STAMP_NS + 301_000_000}
     assert stream({}, {}, delayed, after).statistics().clock_jumps == 0
 
 

@@ -15,7 +15,7 @@ from teachpath_proto.keys import Keys
 from tests.waiting import wait_until
 
 KEYS = Keys()
-FOLLOWING = ExecutorStatus("e1", ExecutorState.FOLLOWING, progress=0.5)
+FOLLOWING_STATUS = ExecutorStatus("e1", ExecutorState.FOLLOWING, progress=0.5)
 
 
 @pytest.fixture
@@ -41,9 +41,9 @@ def begin(monitor: ExecutorMonitor) -> None:
 
 def test_the_newest_status_is_kept_and_the_end_stored(bus: MemoryBus, monitor: ExecutorMonitor, store: Store) -> None:
     begin(monitor)
-    publish(bus, FOLLOWING)
-    assert monitor.get("e1").status == FOLLOWING
-    ended = replace(FOLLOWING, state=ExecutorState.ENDED, progress=1.0)
+    publish(bus, FOLLOWING_STATUS)
+    assert monitor.get("e1").status == FOLLOWING_STATUS
+    ended = replace(FOLLOWING_STATUS, state=ExecutorState.ENDED, progress=1.0)
     publish(bus, ended)
     assert monitor.get("e1").status == ended
     wait_until(lambda: store.execution("e1").status == ended, "the end is stored")
@@ -55,10 +55,10 @@ def test_the_death_of_the_executor_ends_what_was_under_way(
 ) -> None:
     begin(monitor)
     if heard:
-        publish(bus, FOLLOWING)
+        publish(bus, FOLLOWING_STATUS)
     monitor.end_lost("killed by signal 9, Killed")
     wait_until(lambda: store.execution("e1").status.state is ExecutorState.FAULTED, "the end is stored")
-    publish(bus, FOLLOWING)  # it was on its way when the executor died
+    publish(bus, FOLLOWING_STATUS)  # it was on its way when the executor died
     assert monitor.get("e1").status.state is ExecutorState.FAULTED
     assert monitor.get("e1").status.reason.startswith("the executor died (killed by signal 9, Killed); look where")
     assert monitor.get("e1").status.progress == (0.5 if heard else 0.0)
@@ -110,10 +110,10 @@ def test_what_is_under_way_when_the_service_ends_is_stored_as_faulted(bus: Memor
     monitor = ExecutorMonitor(bus, KEYS, store)
     monitor.start()
     begin(monitor)
-    publish(bus, FOLLOWING)
+    publish(bus, FOLLOWING_STATUS)
     monitor.stop()
     kept = store.execution("e1").status
-    assert (kept.state, kept.progress) == (ExecutorState.FAULTED, FOLLOWING.progress)
+    assert (kept.state, kept.progress) == (ExecutorState.FAULTED, FOLLOWING_STATUS.progress)
 
 
 def test_an_execution_that_was_refused_is_not_lost_as_well(

@@ -17,7 +17,7 @@ from teachpath_proto.keys import Keys
 
 KEYS = Keys()
 PAPER = builtin_scenes()["paper"]
-ELSEWHERE = ObjectPose((0.5, -0.2, 0.52), (math.cos(0.3), 0.0, 0.0, math.sin(0.3)))
+OTHER_POSE = ObjectPose((0.5, -0.2, 0.52), (math.cos(0.3), 0.0, 0.0, math.sin(0.3)))
 
 
 class Seen:
@@ -48,8 +48,8 @@ def seen() -> Iterator[Seen]:
 
 def test_a_scene_is_as_configured_until_its_object_is_told_to_lie_elsewhere(seen: Seen) -> None:
     assert seen.poses.scene("paper") == PAPER
-    assert seen.poses.tell("paper", ELSEWHERE) == ELSEWHERE
-    assert seen.poses.scene("paper") == PAPER.with_object(ELSEWHERE)
+    assert seen.poses.tell("paper", OTHER_POSE) == OTHER_POSE
+    assert seen.poses.scene("paper") == PAPER.with_object(OTHER_POSE)
     assert seen.changes == ["paper"]
     seen.poses.forget("paper")
     assert seen.poses.scene("paper") == PAPER
@@ -57,38 +57,38 @@ def test_a_scene_is_as_configured_until_its_object_is_told_to_lie_elsewhere(seen
 
 
 def test_the_executor_is_answered_what_stands_in_a_scene_and_where_its_object_lies(seen: Seen) -> None:
-    seen.poses.tell("paper", ELSEWHERE)
+    seen.poses.tell("paper", OTHER_POSE)
     answer = seen.bus.ask(KEYS.station_scene, encode(SceneQuery("paper")))
-    assert decode(Scene, answer) == PAPER.with_object(ELSEWHERE)
+    assert decode(Scene, answer) == PAPER.with_object(OTHER_POSE)
     with pytest.raises(NotFound, match="no scene 'moon'"):
         seen.bus.ask(KEYS.station_scene, encode(SceneQuery("moon")))
 
 
 def test_a_camera_tells_it_on_the_bus(seen: Seen) -> None:
-    seen.bus.publish(KEYS.object("paper"), encode(ELSEWHERE))
-    assert seen.poses.pose("paper") == ELSEWHERE
+    seen.bus.publish(KEYS.object("paper"), encode(OTHER_POSE))
+    assert seen.poses.pose("paper") == OTHER_POSE
     for nonsense in (b"", b"[]", b'{"position": [NaN, 0, 0]}', encode(ObjectPose((0.0, 0.0, 99.0)))):
         seen.bus.publish(KEYS.object("paper"), nonsense)
-    seen.bus.publish(KEYS.object("empty"), encode(ELSEWHERE))
-    seen.bus.publish(KEYS.object("moon"), encode(ELSEWHERE))
-    assert seen.poses.pose("paper") == ELSEWHERE
+    seen.bus.publish(KEYS.object("empty"), encode(OTHER_POSE))
+    seen.bus.publish(KEYS.object("moon"), encode(OTHER_POSE))
+    assert seen.poses.pose("paper") == OTHER_POSE
 
 
 def test_what_a_camera_sees_of_a_resting_object_changes_nothing(seen: Seen) -> None:
-    seen.poses.tell("paper", ELSEWHERE)
-    x, y, z = ELSEWHERE.position
+    seen.poses.tell("paper", OTHER_POSE)
+    x, y, z = OTHER_POSE.position
     for off in (0.9, -0.9):
-        assert seen.poses.tell("paper", ObjectPose((x + off * SAME_PLACE, y, z), ELSEWHERE.orientation)) == ELSEWHERE
-    assert seen.poses.tell("paper", ObjectPose((x + 1.1 * SAME_PLACE, y, z), ELSEWHERE.orientation)) != ELSEWHERE
+        assert seen.poses.tell("paper", ObjectPose((x + off * SAME_PLACE, y, z), OTHER_POSE.orientation)) == OTHER_POSE
+    assert seen.poses.tell("paper", ObjectPose((x + 1.1 * SAME_PLACE, y, z), OTHER_POSE.orientation)) != OTHER_POSE
     assert seen.changes == ["paper", "paper"]
 
 
 def test_a_scene_stays_as_it_was_while_the_arm_carries_its_object(seen: Seen) -> None:
     seen.moving = True
-    assert seen.poses.tell("paper", ELSEWHERE).position == PAPER.carried.position  # type: ignore[union-attr]
+    assert seen.poses.tell("paper", OTHER_POSE).position == PAPER.carried.position  # type: ignore[union-attr]
     assert seen.changes == []
     seen.moving = False
-    assert seen.poses.pose("paper") == ELSEWHERE
+    assert seen.poses.pose("paper") == OTHER_POSE
 
 
 @pytest.mark.parametrize(
@@ -113,4 +113,4 @@ def test_a_quaternion_is_brought_to_unit_length(seen: Seen) -> None:
 
 def test_a_scene_without_an_object_has_none_to_tell_of(seen: Seen) -> None:
     with pytest.raises(NotFound, match="scene empty has no object; give it one: teachpath scene add"):
-        seen.poses.tell("empty", ELSEWHERE)
+        seen.poses.tell("empty", OTHER_POSE)

@@ -20,7 +20,7 @@ from teachpath.robot.scene_preparation import MAX_TRIANGLES, prepared_scene
 from teachpath.robot.scenes import Scenes
 from tests.contract.rows import demonstration
 
-PAPER, EMPTY = paper_scene(), empty_scene()
+PAPER, EMPTY_SCENE = paper_scene(), empty_scene()
 BALL = Shape("ball", "sphere", (0.05,), (0.5, 0.1, 0.55))
 CORNERS = tuple((x, y, z) for x, y, z in product((0.0, 40.0), repeat=3))
 ARM = Arm.of_settings(MotionSettings())
@@ -35,7 +35,7 @@ def store(tmp_path: Path) -> Iterator[Store]:
 
 @pytest.fixture
 def scenes(store: Store) -> Scenes:
-    return Scenes(store.scenes, (PAPER, EMPTY))
+    return Scenes(store.scenes, (PAPER, EMPTY_SCENE))
 
 
 def lowered(scene: Scene, by: float) -> Scene:
@@ -45,7 +45,7 @@ def lowered(scene: Scene, by: float) -> Scene:
 def test_scenes_of_the_settings_are_first_versions_and_every_later_one_is_read_back(
     scenes: Scenes, store: Store
 ) -> None:
-    assert scenes.all() == [PAPER, EMPTY]
+    assert scenes.all() == [PAPER, EMPTY_SCENE]
     assert [version.number for version in scenes.versions("paper")] == [1]
     saved = [PAPER]
     for number in range(2, 5):
@@ -53,10 +53,10 @@ def test_scenes_of_the_settings_are_first_versions_and_every_later_one_is_read_b
         made = scenes.save(saved[-1], base=number - 1, author="Ada", note=f"{number}")
         assert (made.number, made.author, made.note) == (number, "Ada", f"{number}")
         assert scenes.get("paper") == saved[-1]
-    again = Scenes(store.scenes, (PAPER, EMPTY))
+    again = Scenes(store.scenes, (PAPER, EMPTY_SCENE))
     assert [again.version("paper", number).scene for number in range(1, 5)] == saved
     assert [version.number for version in again.versions("paper")] == [4, 3, 2, 1]
-    assert again.all() == [saved[-1], EMPTY]
+    assert again.all() == [saved[-1], EMPTY_SCENE]
     for number in (0, 5, 10**9):
         with pytest.raises(NotFound, match=f"no version {number} of scene 'paper'; it has 1 to 4"):
             again.version("paper", number)
@@ -80,7 +80,7 @@ def test_of_two_who_change_one_version_the_second_is_told(scenes: Scenes) -> Non
 
 def test_a_removed_scene_is_gone_until_it_is_saved_again(scenes: Scenes) -> None:
     assert scenes.remove("paper", author="Ada").removed
-    assert scenes.all() == [EMPTY]
+    assert scenes.all() == [EMPTY_SCENE]
     for use in (scenes.get, scenes.newest, scenes.remove):
         with pytest.raises(NotFound, match="any more; bring it back with: teachpath scene restore paper"):
             use("paper")
@@ -141,14 +141,14 @@ def test_a_scene_in_which_was_shown_without_an_object_gets_none(scenes: Scenes, 
     store.ensure_task("wave", scene="empty", calibration="identity")
     store.add_demonstration(demonstration("hand", task="wave"))
     with pytest.raises(Conflict, match="had no object when demonstration 1 of task wave was made"):
-        scenes.save(replace(EMPTY, carried=BALL))
-    assert scenes.get("empty") == EMPTY
+        scenes.save(replace(EMPTY_SCENE, carried=BALL))
+    assert scenes.get("empty") == EMPTY_SCENE
 
 
 def test_a_scene_of_the_settings_that_counts_no_more_is_said(scenes: Scenes, store: Store) -> None:
     scenes.save(lowered(PAPER, 0.1))
-    assert Scenes(store.scenes, (PAPER, EMPTY)).notes == []
-    edited = Scenes(store.scenes, (replace(PAPER, floor=-0.5), EMPTY))
+    assert Scenes(store.scenes, (PAPER, EMPTY_SCENE)).notes == []
+    edited = Scenes(store.scenes, (replace(PAPER, floor=-0.5), EMPTY_SCENE))
     assert edited.notes == ["scene paper of the settings counts no more: version 2, which was saved here, does"]
 
 

@@ -16,7 +16,7 @@ from teachpath_proto.keys import Keys
 from tests.waiting import HANG, wait_until
 
 KEYS = Keys()
-MOVING = ExecutorStatus("run-1", ExecutorState.FOLLOWING)
+MOVING_STATUS = ExecutorStatus("run-1", ExecutorState.FOLLOWING)
 ENDING = ExecutorStatus("run-1", ExecutorState.STOPPING, ending=True)
 
 
@@ -65,7 +65,7 @@ def test_a_status_that_shows_it_confirms_a_stop(desk: Desk, status: ExecutorStat
     assert desk.stop() == status
 
 
-@pytest.mark.parametrize("status", [MOVING, ExecutorStatus("run-1", ExecutorState.STOPPING)])
+@pytest.mark.parametrize("status", [MOVING_STATUS, ExecutorStatus("run-1", ExecutorState.STOPPING)])
 def test_an_arm_that_only_comes_to_hold_is_not_stopped_and_the_stop_is_repeated(
     desk: Desk, status: ExecutorStatus
 ) -> None:
@@ -79,7 +79,7 @@ def test_an_arm_that_only_comes_to_hold_is_not_stopped_and_the_stop_is_repeated(
 def test_an_answer_from_whoever_gives_it_is_not_believed(desk: Desk) -> None:
     ended = wire.encode_status(ExecutorStatus("run-1", ExecutorState.ENDED))
     desk.bus.serve(KEYS.executor_stop, lambda _: ended)
-    desk.answer = lambda: MOVING
+    desk.answer = lambda: MOVING_STATUS
     with pytest.raises(NotStopped, match=r"NOT STOPPED: .* press the emergency stop of the arm"):
         desk.stop()
 
@@ -114,7 +114,7 @@ def test_it_goes_on_after_whoever_asked_was_told_until_the_status_shows_it(desk:
 def test_many_who_stop_the_same_share_the_repeats(desk: Desk) -> None:
     outcomes: queue.Queue[ExecutorStatus] = queue.Queue()
     everybody_asked = threading.Event()
-    desk.answer = lambda: ENDING if everybody_asked.is_set() else MOVING
+    desk.answer = lambda: ENDING if everybody_asked.is_set() else MOVING_STATUS
     threads = [threading.Thread(target=lambda: outcomes.put(desk.stop())) for _ in range(20)]
     for thread in threads:
         thread.start()

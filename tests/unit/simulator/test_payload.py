@@ -11,7 +11,7 @@ from teachpath.motion.settings import MotionSettings
 from teachpath.simulator.arm import SimulatedArm
 from teachpath.simulator.settings import SimulatorSettings
 
-HOME, STILL = np.array(MotionSettings().home), np.zeros(6)
+HOME, HOME_AT_REST = np.array(MotionSettings().home), np.zeros(6)
 
 
 def test_it_holds_its_payload() -> None:
@@ -20,8 +20,8 @@ def test_it_holds_its_payload() -> None:
     for arm in (bare, replace(bare, payload=Payload(3.0, (0.05, 0.0, 0.2)))):
         simulated = SimulatedArm(empty_scene(), arm, SimulatorSettings(), HOME)
         for _ in range(300):
-            simulated.step(HOME, STILL, STILL)
-        needed = Dynamics(arm).torques(HOME[None], STILL[None], STILL[None])[0]
+            simulated.step(HOME, HOME_AT_REST, HOME_AT_REST)
+        needed = Dynamics(arm).torques(HOME[None], HOME_AT_REST[None], HOME_AT_REST[None])[0]
         np.testing.assert_allclose(simulated.torque, needed, atol=0.05)
         np.testing.assert_allclose(simulated.position, HOME, atol=1e-3)
         held[arm] = simulated.torque

@@ -30,7 +30,7 @@ HOME = np.array(MotionSettings().home)
 START = 1_700_000_000_000_000_000
 PERIOD_NS = 4_000_000
 
-NOWHERE = np.empty((0, 3, 6))
+NO_WAY_TO_REST = np.empty((0, 3, 6))
 
 
 class Bench:
@@ -86,7 +86,7 @@ class Bench:
         *,
         closed: bool = False,
         execution: str = "e1",
-        way: np.ndarray = NOWHERE,
+        way: np.ndarray = NO_WAY_TO_REST,
     ) -> None:
         self.cycle += 1
         setpoint = Setpoint(self.cycle, self.now, self.now, q, v, a, closed, execution, way_to_rest=way)
@@ -179,7 +179,7 @@ def test_without_setpoints_it_follows_the_way_to_rest_says_so_and_waits_for_a_st
     def begin(now: int) -> None:
         if bench.cycle < 2 and (now - START) % PERIOD_NS == 0:
             moves = bench.cycle == 1
-            bench.send(HOME, velocity * moves, np.zeros(6), way=way if moves else NOWHERE)
+            bench.send(HOME, velocity * moves, np.zeros(6), way=way if moves else NO_WAY_TO_REST)
 
     states = bench.run(0.5, begin)
     assert not states[0].holding

@@ -24,11 +24,11 @@ from teachpath_client.rest import IDLE_TIMEOUT, Rest
 from tests.ports import free_port
 from tests.waiting import HANG, wait_until
 
-SHORT = 0.3  # [s] after which a client of these tests is too slow
-NEVER = 3600.0
-ASKED = threading.Event()  # somebody waits for what never comes
-OVER = threading.Event()  # nothing more is sent to a client of these tests
-LARGE = 16 * 1024 * 1024  # bytes; more than all buffers on the way hold
+SHORT_TIMEOUT = 0.3  # [s] after which a client of these tests is too slow
+LONG_TIMEOUT = 3600.0
+REQUESTED = threading.Event()  # somebody waits for what never comes
+FINISHED = threading.Event()  # nothing more is sent to a client of these tests
+LARGE_BODY = 16 * 1024 * 1024  # bytes; more than all buffers on the way hold
 HANDSHAKE = (
     b"GET /messages HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
     b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
@@ -40,7 +40,7 @@ async def answer(request: Request) -> PlainTextResponse:
 
 
 async def wait_for_ever(request: Request) -> PlainTextResponse:
-    ASKED.set()
+    REQUESTED.set()
     await asyncio.Event().wait()
     raise AssertionError
 
@@ -61,10 +61,10 @@ async def pour(request: Request) -> StreamingResponse:
 async def pieces() -> AsyncIterator[str]:
     """Give much, and then, when that was taken or the reader has gone, a little more."""
     try:
-        yield "x" * LARGE
+        yield "x" * LARGE_BODY
         yield "x"
     finally:
-        OVER.set()
+        FINISHED.set()
 
 
 async def pour_messages(page: WebSocket) -> None:
@@ -72,7 +72,7 @@ async def pour_messages(page: WebSocket) -> None:
     with suppress(Exception):  # the page has gone
         while True:
             await page.send_text("x" * 65536)
-    OVER.set()
+    FINISHED.set()
 
 
 @contextmanager
@@ -149,13 +149,13 @@ def test_only_a_proxy_that_is_named_is_believed_for_whom_it_asks(proxies: tuple[
 
 @pytest.mark.parametrize("sent", [b"", b"GET / HTTP/1.1\r\nHost: "])
 def test_a_request_whose_head_does_not_come_is_closed(sent: bytes) -> None:
-    with served(request_timeout=SHORT) as port, opened(port, sent) as connection:
+    with served(request_timeout=SHORT_TIMEOUT) as port, opened(port, sent) as connection:
         assert "web.request_timeout" in refusal(rest(connection), 408)
         assert answered(port).endswith(b"\r\n0 bytes")
 
 
 def test_so_is_the_second_request_of_a_connection() -> None:
-    with served(request_timeout=SHORT) as port, ExitStack() as stack:
+    with served(request_timeout=SHORT_TIMEOUT) as port, ExitStack() as stack:
 
         def opens() -> socket.socket | None:
             connection = stack.enter_context(opened(port, b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"))
@@ -170,7 +170,7 @@ def test_so_is_the_second_request_of_a_connection() -> None:
 
 def test_a_body_that_does_not_come_is_refused() -> None:
     head = b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\nConnection: close\r\n\r\n"
-    with served(request_timeout=SHORT) as port:
+    with served(request_timeout=SHORT_TIMEOUT) as port:
         with opened(port, head + b"x" * 60) as connection:
             assert "60 bytes of the body came" in refusal(rest(connection), 408)
         assert answered(port, head + b"x" * 100).endswith(b"100 bytes")
@@ -178,28 +178,31 @@ def test_a_body_that_does_not_come_is_refused() -> None:
 
 def test_a_request_that_waits_when_the_service_ends_is_answered() -> None:
     with ExitStack() as stack:
-        with served(request_timeout=NEVER) as port:
+        with served(request_timeout=LONG_TIMEOUT) as port:
             connection = stack.enter_context(opened(port, b"GET /never HTTP/1.1\r\nHost: x\r\n\r\n"))
-            assert ASKED.wait(HANG)
+            assert REQUESTED.wait(HANG)
         assert "the service ends" in refusal(rest(connection), 503)
 
 
 def test_a_reader_that_takes_nothing_is_closed() -> None:
-    OVER.clear()
-    with served(request_timeout=SHORT) as port, opened(port, b"GET /large HTTP/1.1\r\nHost: x\r\n\r\n") as connection:
-        assert OVER.wait(HANG)
-        assert len(rest(connection)) < LARGE
+    FINISHED.clear()
+    with (
+        served(request_timeout=SHORT_TIMEOUT) as port,
+        opened(port, b"GET /large HTTP/1.1\r\nHost: x\r\n\r\n") as connection,
+    ):
+        assert FINISHED.wait(HANG)
+        assert len(rest(connection)) < LARGE_BODY
 
 
 def test_a_page_that_reads_no_message_is_closed() -> None:
-    OVER.clear()
-    with served(request_timeout=SHORT) as port, opened(port, HANDSHAKE) as connection:
-        assert OVER.wait(HANG)
+    FINISHED.clear()
+    with served(request_timeout=SHORT_TIMEOUT) as port, opened(port, HANDSHAKE) as connection:
+        assert FINISHED.wait(HANG)
         assert rest(connection).startswith(b"HTTP/1.1 101")  # and it ends
 
 
 def test_for_a_new_connection_the_oldest_without_a_request_is_closed() -> None:
-    with served(request_timeout=NEVER, max_connections=10) as port, ExitStack() as stack:
+    with served(request_timeout=LONG_TIMEOUT, max_connections=10) as port, ExitStack() as stack:
         hanging = [stack.enter_context(opened(port, b"GET / HTTP/1.1\r\nHost: ")) for _ in range(10)]
         assert answered(port).endswith(b"\r\n0 bytes")
         assert rest(hanging[0]) == b""
@@ -208,7 +211,7 @@ def test_for_a_new_connection_the_oldest_without_a_request_is_closed() -> None:
 
 
 def test_when_all_connections_are_used_another_is_refused_with_a_sentence() -> None:
-    with served(request_timeout=NEVER, max_connections=10) as port, ExitStack() as stack:
+    with served(request_timeout=LONG_TIMEOUT, max_connections=10) as port, ExitStack() as stack:
         for _ in range(10):
             page = stack.enter_context(opened(port, HANDSHAKE))
             assert page.recv(12) == b"HTTP/1.1 101"

@@ -27,12 +27,12 @@ from teachpath.web.settings import WebSettings
 from tests.ports import free_port
 from tests.waiting import HANG, wait_until
 
-NOW = datetime.now(UTC)
+CURRENT_TIME = datetime.now(UTC)
 HOSTS = ["localhost", "127.0.0.1"]
-NEVER = 3600.0
+LONG_TIMEOUT = 3600.0
 
 
-def certified(folder: Path, *, now: datetime = NOW) -> Path:
+def certified(folder: Path, *, now: datetime = CURRENT_TIME) -> Path:
     prepare_web_authority(folder, HOSTS, now)
     issue_web_certificate(folder, HOSTS, now)
     return folder
@@ -72,7 +72,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def port(folder: Path) -> Iterator[int]:
-    with served(folder, max_connections=10, request_timeout=NEVER) as port:
+    with served(folder, max_connections=10, request_timeout=LONG_TIMEOUT) as port:
         yield port
 
 
@@ -196,21 +196,21 @@ def test_the_authority_stays_when_the_certificate_is_renewed_and_is_made_anew_fo
     folder = certified(tmp_path / "tls")
     before = (folder / "authority.pem").read_bytes()
     private = ["robot.local", "192.168.7.7", "fd00::7", "localhost"]
-    assert not prepare_web_authority(folder, private, NOW)
-    issue_web_certificate(folder, private, NOW + timedelta(days=1))
+    assert not prepare_web_authority(folder, private, CURRENT_TIME)
+    issue_web_certificate(folder, private, CURRENT_TIME + timedelta(days=1))
     assert (folder / "authority.pem").read_bytes() == before
     assert web_hosts(folder) == private
-    assert web_expiry(folder) == (NOW + timedelta(days=398)).replace(microsecond=0)
+    assert web_expiry(folder) == (CURRENT_TIME + timedelta(days=398)).replace(microsecond=0)
     for further in ("robot.lab.example", "203.0.113.7"):
-        assert prepare_web_authority(folder, [*private, further], NOW)
-        assert not prepare_web_authority(folder, [further], NOW)
+        assert prepare_web_authority(folder, [*private, further], CURRENT_TIME)
+        assert not prepare_web_authority(folder, [further], CURRENT_TIME)
 
 
 def test_what_the_authority_may_not_vouch_for_is_not_believed(tmp_path: Path) -> None:
     """Whoever steals its key cannot pass for another site."""
     folder = tmp_path / "tls"
-    prepare_web_authority(folder, HOSTS, NOW)
-    issue_web_certificate(folder, ["elsewhere.example"], NOW)
+    prepare_web_authority(folder, HOSTS, CURRENT_TIME)
+    issue_web_certificate(folder, ["elsewhere.example"], CURRENT_TIME)
     trusting = ssl.create_default_context(cafile=str(folder / "authority.pem"))
     there, here = ssl.MemoryBIO(), ssl.MemoryBIO()
     server = WebCertificate(folder).context.wrap_bio(there, here, server_side=True)
@@ -227,7 +227,7 @@ def test_the_end_is_told_before_it_comes_and_a_renewed_certificate_is_taken_up(t
         f"ends on {end:%Y-%m-%d}; renew it with: teachpath tls init" in certificate.notes(end - timedelta(days=29))[0]
     )
     assert "and browsers refuse it" in certificate.notes(end)[0]
-    issue_web_certificate(folder, HOSTS, NOW + timedelta(days=100))
+    issue_web_certificate(folder, HOSTS, CURRENT_TIME + timedelta(days=100))
     assert certificate.notes(end) == []
 
 
@@ -235,11 +235,11 @@ def test_a_pair_that_does_not_fit_spoils_nothing(tmp_path: Path) -> None:
     folder, other = certified(tmp_path / "tls"), certified(tmp_path / "other")
     certificate, key = WebCertificate(folder), (folder / "station.key").read_text()
     (folder / "station.key").write_bytes((other / "station.key").read_bytes())
-    assert "the former certificate of the web port is still used" in certificate.notes(NOW)[0]
+    assert "the former certificate of the web port is still used" in certificate.notes(CURRENT_TIME)[0]
     (folder / "station.key").write_text(key)
-    assert certificate.notes(NOW) == []
+    assert certificate.notes(CURRENT_TIME) == []
     (folder / "station.pem").unlink()
-    assert "cannot read the certificate" in certificate.notes(NOW)[0]
+    assert "cannot read the certificate" in certificate.notes(CURRENT_TIME)[0]
 
 
 def test_files_that_cannot_be_used_are_refused_with_the_way_out(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from teachpath_client.devices.cyberglove_wire import GloveParser, period, vibration, write_sample
 
 LETTERS = pytest.mark.parametrize("letter", [b"S", b"G", b"s", b"g"])
-RAW = st.lists(st.integers(1, 255), min_size=22, max_size=22).map(tuple)
+RAW_READINGS = st.lists(st.integers(1, 255), min_size=22, max_size=22).map(tuple)
 
 
 def found(wire: bytes, sensors: int = 22, size: int = 10**6) -> list[tuple[int, ...]]:
@@ -30,7 +30,7 @@ def test_commands_have_the_bytes_of_the_drivers() -> None:
 
 @LETTERS
 @settings(max_examples=100, deadline=None)
-@given(samples=st.lists(RAW, min_size=1, max_size=5), size=st.integers(1, 200))
+@given(samples=st.lists(RAW_READINGS, min_size=1, max_size=5), size=st.integers(1, 200))
 def test_whole_samples_come_out_in_order_whatever_the_pieces(
     letter: bytes, samples: list[tuple[int, ...]], size: int
 ) -> None:
@@ -39,7 +39,7 @@ def test_whole_samples_come_out_in_order_whatever_the_pieces(
 
 @LETTERS
 @settings(max_examples=200, deadline=None)
-@given(noise=st.binary(max_size=200), samples=st.lists(RAW, min_size=2, max_size=4), size=st.integers(1, 200))
+@given(noise=st.binary(max_size=200), samples=st.lists(RAW_READINGS, min_size=2, max_size=4), size=st.integers(1, 200))
 def test_after_noise_every_whole_sample_comes_out(
     letter: bytes, noise: bytes, samples: list[tuple[int, ...]], size: int
 ) -> None:
@@ -49,7 +49,7 @@ def test_after_noise_every_whole_sample_comes_out(
 
 
 @settings(max_examples=200, deadline=None)
-@given(raw=RAW, other=RAW, cut=st.integers(0, 22))
+@given(raw=RAW_READINGS, other=RAW_READINGS, cut=st.integers(0, 22))
 def test_a_torn_sample_spoils_no_whole_one(raw: tuple[int, ...], other: tuple[int, ...], cut: int) -> None:
     assert found(write_sample(b"S", raw)[:cut] + write_sample(b"S", other)) == [other]
     assert found(write_sample(b"S", raw)[1 + cut :] + write_sample(b"S", other))[-1:] == [other]

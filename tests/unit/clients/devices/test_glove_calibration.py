@@ -9,14 +9,14 @@ from teachpath_client.devices.glove_calibration import GloveCalibration
 from teachpath_client.errors import ClientError
 from tests.unit.clients.devices.readings import calibration
 
-OPENED = [[60 + i, *[100] * 3, *[50] * 14] for i in (-1, 0, 1)]
-CLOSED = [[160 + i, *[40] * 3, *[200] * 11, 51, 50, 49] for i in (-1, 0, 1)]
+OPEN_READINGS = [[60 + i, *[100] * 3, *[50] * 14] for i in (-1, 0, 1)]
+CLOSED_READINGS = [[160 + i, *[40] * 3, *[200] * 11, 51, 50, 49] for i in (-1, 0, 1)]
 
 
 def test_an_open_hand_is_0_and_a_fist_is_1() -> None:
-    made = GloveCalibration.between(OPENED, CLOSED)
-    assert made.flexions(OPENED[1]) == (0.0,) * 18
-    assert made.flexions(CLOSED[1]) == (1.0,) * 18
+    made = GloveCalibration.between(OPEN_READINGS, CLOSED_READINGS)
+    assert made.flexions(OPEN_READINGS[1]) == (0.0,) * 18
+    assert made.flexions(CLOSED_READINGS[1]) == (1.0,) * 18
     assert made.gain[15:] == (0.0, 0.0, 0.0)
 
 
@@ -39,7 +39,7 @@ def test_raw_is_the_inverse_but_for_a_step(flexions: list[float]) -> None:
 
 
 def test_a_file_keeps_every_value(tmp_path: Path) -> None:
-    made = GloveCalibration.between(OPENED, CLOSED)
+    made = GloveCalibration.between(OPEN_READINGS, CLOSED_READINGS)
     made.save(tmp_path / "glove.toml")
     assert GloveCalibration.load(tmp_path / "glove.toml") == made
 
@@ -55,6 +55,6 @@ def test_a_file_that_is_none_is_said(tmp_path: Path, text: str) -> None:
 
 def test_a_hand_that_did_not_close_is_said() -> None:
     with pytest.raises(ClientError, match="0 of 18 sensors tell"):
-        GloveCalibration.between(OPENED, OPENED)
+        GloveCalibration.between(OPEN_READINGS, OPEN_READINGS)
     with pytest.raises(ClientError, match="is it plugged in"):
-        GloveCalibration.between(OPENED, [])
+        GloveCalibration.between(OPEN_READINGS, [])

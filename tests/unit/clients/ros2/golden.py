@@ -35,7 +35,7 @@ JOINTS = bytes.fromhex(
     "00000000 00000000"  # neither speeds nor efforts
 )
 GRASP = bytes.fromhex("00010000 01")
-OPEN = bytes.fromhex("00010000 00")
+OPEN_PREFIX = bytes.fromhex("00010000 00")
 
 # number 5, stamp 7 ns, 16 bytes of the publisher
 ATTACHMENT = bytes.fromhex("0500000000000000 0700000000000000 10 000102030405060708090a0b0c0d0e0f")

@@ -16,7 +16,7 @@ from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system
 
-ASKED, REPORTED = "/teachpath/follow_joint_trajectory", "/teachpath/execution"
+REQUEST_TOPIC, REPORT_TOPIC = "/teachpath/follow_joint_trajectory", "/teachpath/execution"
 
 
 @pytest.fixture
@@ -25,16 +25,17 @@ def peer() -> Iterator[RmwPeer]:
     requests = PlanRequests(NAMES, {"plan-1": planned()})
     with RmwPeer() as peer, Node(peer.router) as node:
         nobody = Station("http://127.0.0.1:9")
-        names = {"robot": "puma560", "asked": ASKED, "reported": REPORTED}
+        names = {"robot": "puma560", "asked": REQUEST_TOPIC, "reported": REPORT_TOPIC}
         with nobody, TrajectoryFollower(node, nobody, requests, **names, clock=lambda: golden.STAMP_NS):
             wait_until(
-                lambda: any(f"/MS/%/%/teachpath/{ASKED.replace('/', '%')}/" in t for t in peer.tokens()), "hears"
+                lambda: any(f"/MS/%/%/teachpath/{REQUEST_TOPIC.replace('/', '%')}/" in t for t in peer.tokens()),
+                "hears",
             )
             yield peer
 
 
 def reports(peer: RmwPeer) -> list[bytes]:
-    key = f"0{REPORTED}/{TYPES[DIAGNOSTICS]}"
+    key = f"0{REPORT_TOPIC}/{TYPES[DIAGNOSTICS]}"
     return [content for each, content, _ in list(peer.heard) if each == key]
 
 
@@ -47,7 +48,7 @@ def answer(peer: RmwPeer, content: bytes) -> str:
     before = len(reports(peer))
 
     def answered() -> bool:  # what is sent before the subscription is known here is not seen
-        peer.put(ASKED, TRAJECTORY, content)
+        peer.put(REQUEST_TOPIC, TRAJECTORY, content)
         return len(reports(peer)) > before
 
     wait_until(answered, "it is answered")

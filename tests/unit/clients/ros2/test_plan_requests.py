@@ -16,7 +16,7 @@ from teachpath_client.ros2.trajectories import JointMotion, read_trajectory, tra
 from tests.unit.clients.ros2 import golden
 from tests.unit.clients.ros2.test_readings import NAMES
 
-NOW = golden.STAMP_NS
+NOW_NS = golden.STAMP_NS
 DURATION = 1.2345  # s
 SECOND = 1_000_000_000
 
@@ -33,7 +33,7 @@ def written(rate: float, duration: float = DURATION) -> bytes:
     """Return the plan as a station writes it."""
     times = np.arange(int(np.ceil(duration * rate)) + 1) / rate
     names = tuple(f"joint {number}" for number in range(1, 7))
-    return joint_trajectory_cdr(SampledMotion("p", NOW, (), names, rate, times, *moved(times, duration)))
+    return joint_trajectory_cdr(SampledMotion("p", NOW_NS, (), names, rate, times, *moved(times, duration)))
 
 
 @cache
@@ -41,14 +41,14 @@ def planned() -> PlannedMotion:
     return PlannedMotion(read_trajectory(decode(TRAJECTORY, written(PLAN_RATE)), NAMES), DURATION)
 
 
-def asking(rate: float = 125.0, *, stamp: int = NOW, **changed: Any) -> bytes:
+def asking(rate: float = 125.0, *, stamp: int = NOW_NS, **changed: Any) -> bytes:
     """Return the plan's own trajectory with a stamp; changed: joint_names, points."""
     message = decode(TRAJECTORY, written(rate))
     fields = {"joint_names": message.joint_names, "points": message.points} | changed
     return encode(TRAJECTORY, header=header(stamp, ""), **fields)
 
 
-def judged(content: bytes, *, now: int = NOW) -> str | None:
+def judged(content: bytes, *, now: int = NOW_NS) -> str | None:
     return PlanRequests(NAMES, {"plan-1": planned()}).plan_of(content, now)
 
 
@@ -128,8 +128,8 @@ def test_another_motion_a_faster_and_a_slower_one_are_refused() -> None:
     ("stamp", "sentence"),
     [
         (0, "it has no stamp"),
-        (NOW - 3 * SECOND, r"3\.0 s old, limit 2 s"),
-        (NOW + 3 * SECOND, r"3\.0 s ahead of the clock here"),
+        (NOW_NS - 3 * SECOND, r"3\.0 s old, limit 2 s"),
+        (NOW_NS + 3 * SECOND, r"3\.0 s ahead of the clock here"),
     ],
 )
 def test_a_stale_one_is_refused(stamp: int, sentence: str) -> None:
@@ -139,15 +139,15 @@ def test_a_stale_one_is_refused(stamp: int, sentence: str) -> None:
 
 def test_a_stamp_counts_once_whatever_came_of_it() -> None:
     requests = PlanRequests(NAMES, {"plan-1": planned()})
-    assert requests.plan_of(asking(), NOW) == "plan-1"
-    for stamp in (NOW, NOW - 1):
+    assert requests.plan_of(asking(), NOW_NS) == "plan-1"
+    for stamp in (NOW_NS, NOW_NS - 1):
         with pytest.raises(Malformed, match="it came twice"):
-            requests.plan_of(asking(stamp=stamp), NOW)
+            requests.plan_of(asking(stamp=stamp), NOW_NS)
     with pytest.raises(Malformed, match="no plan's motion"):
-        requests.plan_of(asking(stamp=NOW + 2, points=decode(TRAJECTORY, written(125.0, 2.0)).points), NOW)
+        requests.plan_of(asking(stamp=NOW_NS + 2, points=decode(TRAJECTORY, written(125.0, 2.0)).points), NOW_NS)
     with pytest.raises(Malformed, match="it came twice"):
-        requests.plan_of(asking(stamp=NOW + 2), NOW)
-    assert requests.plan_of(asking(stamp=NOW + 3), NOW) == "plan-1"
+        requests.plan_of(asking(stamp=NOW_NS + 2), NOW_NS)
+    assert requests.plan_of(asking(stamp=NOW_NS + 3), NOW_NS) == "plan-1"
 
 
 def test_a_trajectory_without_points_asks_for_a_stop_with_any_stamp() -> None:
@@ -158,7 +158,7 @@ def test_a_trajectory_without_points_asks_for_a_stop_with_any_stamp() -> None:
 def test_two_plans_of_one_motion_are_told_apart_by_nobody() -> None:
     requests = PlanRequests(NAMES, {"plan-1": planned(), "plan-2": planned()})
     with pytest.raises(Malformed, match="plan-1 and of plan-2: let only one of them be asked for"):
-        requests.plan_of(asking(), NOW)
+        requests.plan_of(asking(), NOW_NS)
 
 
 def test_damaged_bytes_begin_no_other_motion() -> None:

@@ -12,7 +12,7 @@ from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.records import Calibration, JointState, TeleopRequest
 from tests.unit.executor.executors import within_limits
 from tests.unit.executor.teleop.test_program import CLUTCH, Held
-from tests.unit.recording.hands import CLOSED, OPEN, sample
+from tests.unit.recording.hands import CLOSED_HAND, OPEN_HAND, sample
 
 ARM = Arm.of_variant()
 
@@ -97,11 +97,11 @@ def test_the_block_is_taken_carried_through_the_clutch_and_put_down() -> None:
 @pytest.mark.parametrize("closed", [False, True])
 def test_only_a_change_of_the_hand_moves_the_gripper(closed: bool) -> None:
     grip = GripperFollower(closed)
-    grip.engage(sample(1, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
-    grip.follow(sample(2, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
+    grip.engage(sample(1, (0.0, 0.0, 0.0), OPEN_HAND if closed else CLOSED_HAND))
+    grip.follow(sample(2, (0.0, 0.0, 0.0), OPEN_HAND if closed else CLOSED_HAND))
     assert grip.closed == closed
     grip.follow(sample(3, (0.0, 0.0, 0.0), (0.5,) * 22))
     assert grip.closed == closed
-    grip.follow(sample(4, (0.0, 0.0, 0.0), CLOSED if closed else OPEN))
-    grip.follow(sample(5, (0.0, 0.0, 0.0), OPEN if closed else CLOSED))
+    grip.follow(sample(4, (0.0, 0.0, 0.0), CLOSED_HAND if closed else OPEN_HAND))
+    grip.follow(sample(5, (0.0, 0.0, 0.0), OPEN_HAND if closed else CLOSED_HAND))
     assert grip.closed != closed

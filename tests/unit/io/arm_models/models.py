@@ -4,7 +4,7 @@ from pathlib import Path
 
 from teachpath.io.arm_models.examples import EXAMPLES
 
-SIX, SEVEN = EXAMPLES["six-axis"], EXAMPLES["seven-axis"]
+SIX_AXIS, SEVEN_AXIS = EXAMPLES["six-axis"], EXAMPLES["seven-axis"]
 
 
 def changed(folder: Path, example: Path, *changes: tuple[str, str]) -> Path:

@@ -15,7 +15,7 @@ from teachpath.io.arm_models.links import bounding_corners
 from teachpath.motion.arm.poses import pose_matrix
 from teachpath.motion.arm.rotations import rotation_matrices
 from teachpath.records import LimitSource
-from tests.unit.io.arm_models.models import SEVEN, SIX, changed, limits
+from tests.unit.io.arm_models.models import SEVEN_AXIS, SIX_AXIS, changed, limits
 
 ELBOW = '<limit lower="-2.8" upper="2.8" velocity="2.5" effort="120"/>'
 CYLINDER = '<cylinder radius="0.045" length="0.4"/>'  # of the forearm
@@ -29,38 +29,54 @@ FINGERS = FINGER.format("left", RANGE) + FINGER.format("right", RANGE + '<mimic 
 SECOND_ARM = (
     '<body name="other" pos="0 1 0"><joint name="other" axis="0 0 1" range="-1 1"/><geom size="0.1" mass="1"/></body>'
 )
-TIED = '<equality><connect body1="link2" body2="link4" anchor="0 0 0"/></equality></mujoco>'
+TIED_LINKS = '<equality><connect body1="link2" body2="link4" anchor="0 0 0"/></equality></mujoco>'
 
 
 @pytest.mark.parametrize(
     ("example", "changes", "sentence"),
     [
-        (SIX, [("<robot ", '<robot xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arm/></robot><robot ')], "expanded"),
-        (SIX, [("<robot ", "<sdf ")], "is no XML"),
-        (SEVEN, [("<mujoco ", "<sdf "), ("</mujoco>", "</sdf>")], "begins with <sdf>; a URDF begins with <robot>"),
-        (SIX, [(CYLINDER, '<mesh filename="arm.stl"/>')], "the mesh arm.stl is missing"),
-        (SIX, [(CYLINDER, '<mesh filename="package://my_arm/arm.stl"/>')], "put the package my_arm there"),
-        (SIX, [(ELBOW, ELBOW.replace('velocity="2.5"', 'velocity="0"'))], "forearm_joint has the limit velocity 0"),
-        (SIX, [(ELBOW, ELBOW.replace('effort="120"', 'effort="-1"'))], "forearm_joint has the limit effort -1"),
-        (SIX, [('forearm_joint" type="revolute"', 'forearm_joint" type="continuous"')], "forearm_joint is continuous"),
-        (SIX, [(ELBOW, f'{ELBOW}<mimic joint="upper_arm_joint"/>')], "forearm_joint mimics upper_arm_joint"),
         (
-            SIX,
+            SIX_AXIS,
+            [("<robot ", '<robot xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arm/></robot><robot ')],
+            "expanded",
+        ),
+        (SIX_AXIS, [("<robot ", "<sdf ")], "is no XML"),
+        (SEVEN_AXIS, [("<mujoco ", "<sdf "), ("</mujoco>", "</sdf>")], "begins with <sdf>; a URDF begins with <robot>"),
+        (SIX_AXIS, [(CYLINDER, '<mesh filename="arm.stl"/>')], "the mesh arm.stl is missing"),
+        (SIX_AXIS, [(CYLINDER, '<mesh filename="package://my_arm/arm.stl"/>')], "put the package my_arm there"),
+        (
+            SIX_AXIS,
+            [(ELBOW, ELBOW.replace('velocity="2.5"', 'velocity="0"'))],
+            "forearm_joint has the limit velocity 0",
+        ),
+        (SIX_AXIS, [(ELBOW, ELBOW.replace('effort="120"', 'effort="-1"'))], "forearm_joint has the limit effort -1"),
+        (
+            SIX_AXIS,
+            [('forearm_joint" type="revolute"', 'forearm_joint" type="continuous"')],
+            "forearm_joint is continuous",
+        ),
+        (SIX_AXIS, [(ELBOW, f'{ELBOW}<mimic joint="upper_arm_joint"/>')], "forearm_joint mimics upper_arm_joint"),
+        (
+            SIX_AXIS,
             [('forearm_joint" type="revolute"', 'forearm_joint" type="prismatic"')],
             "forearm_joint is a slide joint",
         ),
-        (SIX, [('wrist_3_joint" type="revolute"', 'wrist_3_joint" type="fixed"')], "the arm has 5 joints"),
-        (SIX, [('<child link="tool0"/>', '<child link="wrist_1_link"/>')], "both move wrist_1_link: a closed loop"),
-        (SIX, [('<mass value="2.8"/>', '<mass value="0"/>')], "give the link an <inertial>"),
-        (SEVEN, [('axis="0 -1 0" range', 'axis="0 -1 0" ref="0.3" range')], "joint4 has ref 0.3"),
+        (SIX_AXIS, [('wrist_3_joint" type="revolute"', 'wrist_3_joint" type="fixed"')], "the arm has 5 joints"),
         (
-            SEVEN,
+            SIX_AXIS,
+            [('<child link="tool0"/>', '<child link="wrist_1_link"/>')],
+            "both move wrist_1_link: a closed loop",
+        ),
+        (SIX_AXIS, [('<mass value="2.8"/>', '<mass value="0"/>')], "give the link an <inertial>"),
+        (SEVEN_AXIS, [('axis="0 -1 0" range', 'axis="0 -1 0" ref="0.3" range')], "joint4 has ref 0.3"),
+        (
+            SEVEN_AXIS,
             [(' range="-1.7 1.7"', "")],
             r"joint2 is continuous, .*write lower and upper \[rad\] of \[joints.joint2\]",
         ),
-        (SEVEN, [("</mujoco>", TIED)], "link2 and link4 are tied together"),
-        (SEVEN, [("</worldbody>", f"{SECOND_ARM}</worldbody>")], "2 arms, which end in link7, other; name one"),
-        (SEVEN, [("<worldbody>", "<worldbody/><other>"), ("</worldbody>", "</other>")], "MuJoCo cannot use"),
+        (SEVEN_AXIS, [("</mujoco>", TIED_LINKS)], "link2 and link4 are tied together"),
+        (SEVEN_AXIS, [("</worldbody>", f"{SECOND_ARM}</worldbody>")], "2 arms, which end in link7, other; name one"),
+        (SEVEN_AXIS, [("<worldbody>", "<worldbody/><other>"), ("</worldbody>", "</other>")], "MuJoCo cannot use"),
     ],
 )
 def test_a_model_that_cannot_be_used_is_refused_with_the_way_out(
@@ -72,7 +88,7 @@ def test_a_model_that_cannot_be_used_is_refused_with_the_way_out(
 
 def test_inertia_that_no_body_has_is_refused_with_its_link(tmp_path: Path) -> None:
     impossible = changed(
-        tmp_path, SIX, ('<mass value="2.8"/>\n      <inertia ixx="', '<mass value="2.8"/>\n<inertia ixx="9')
+        tmp_path, SIX_AXIS, ('<mass value="2.8"/>\n      <inertia ixx="', '<mass value="2.8"/>\n<inertia ixx="9')
     )
     with pytest.raises(
         UnusableInput, match=r"forearm_link has principal moments of inertia .* write those of the real"
@@ -90,7 +106,9 @@ def test_a_model_without_joints_is_refused(tmp_path: Path) -> None:
 
 
 def test_limits_say_who_gave_them(tmp_path: Path) -> None:
-    arm = read_arm(SIX, limits=limits(tmp_path, "acceleration = 5\n[joints.forearm_joint]\nspeed = 1.25\nupper = 2.0"))
+    arm = read_arm(
+        SIX_AXIS, limits=limits(tmp_path, "acceleration = 5\n[joints.forearm_joint]\nspeed = 1.25\nupper = 2.0")
+    )
     elbow = arm.joints[2]
     assert (elbow.lower.value, elbow.lower.source) == (-2.8, LimitSource.MODEL)
     assert (elbow.upper.value, elbow.upper.source) == (2.0, LimitSource.OPERATOR)
@@ -101,7 +119,7 @@ def test_limits_say_who_gave_them(tmp_path: Path) -> None:
 
 
 def test_where_nobody_says_a_torque_the_joint_holds_the_arm_stretched_out(tmp_path: Path) -> None:
-    silent = changed(tmp_path, SIX, (' effort="120"', ""))
+    silent = changed(tmp_path, SIX_AXIS, (' effort="120"', ""))
     arm = read_arm(silent)
     far, moment = 0.0, 0.0
     for link in arm.links[2:]:
@@ -126,21 +144,21 @@ def test_where_nobody_says_a_torque_the_joint_holds_the_arm_stretched_out(tmp_pa
 )
 def test_limits_that_no_arm_can_have_are_refused(tmp_path: Path, text: str, sentence: str) -> None:
     with pytest.raises(UnusableInput, match=sentence):
-        read_arm(SIX, limits=limits(tmp_path, text))
+        read_arm(SIX_AXIS, limits=limits(tmp_path, text))
 
 
 def test_fingers_at_the_end_are_held_and_said(tmp_path: Path) -> None:
-    arm = read_arm(changed(tmp_path, SIX, ("</robot>", f"{FINGERS}</robot>")))
+    arm = read_arm(changed(tmp_path, SIX_AXIS, ("</robot>", f"{FINGERS}</robot>")))
     assert arm.held == ("left", "right")
     assert len(arm.links) == 6
     assert arm.links[-1].mass == pytest.approx(0.3 + 0.2)
 
 
 def test_one_of_two_arms_is_named_by_its_tool(tmp_path: Path) -> None:
-    two = changed(tmp_path, SEVEN, ("</worldbody>", f"{SECOND_ARM}</worldbody>"))
+    two = changed(tmp_path, SEVEN_AXIS, ("</worldbody>", f"{SECOND_ARM}</worldbody>"))
     arm = read_arm(two, tool="tool0")
     assert arm.held == ("other",)
-    assert arm.links == read_arm(SEVEN).links
+    assert arm.links == read_arm(SEVEN_AXIS).links
     with pytest.raises(UnusableInput, match="no body or site 'hand' for the tool; known: base, link1"):
         read_arm(two, tool="hand")
 
@@ -152,7 +170,7 @@ def test_a_mesh_of_a_package_is_found_and_becomes_its_hull(tmp_path: Path) -> No
     (tmp_path / "my_arm" / "urdf").mkdir(parents=True)
     (tmp_path / "my_arm" / "cube.stl").write_bytes(bytes(80) + struct.pack("<I", len(triangles)) + records)
     mesh = '<mesh filename="package://my_arm/cube.stl" scale="1 1 2"/>'
-    arm = read_arm(changed(tmp_path / "my_arm" / "urdf", SIX, (CYLINDER, mesh)))
+    arm = read_arm(changed(tmp_path / "my_arm" / "urdf", SIX_AXIS, (CYLINDER, mesh)))
     (solid,) = arm.links[2].solids
     assert solid.kind == "mesh"
     turn = rotation_matrices(np.array([solid.orientation]))[0]
@@ -172,7 +190,7 @@ def test_what_bounds_a_hull_of_many_corners_holds_all_of_them_and_little_more() 
     assert hull.volume < bound.volume < 1.1 * hull.volume
 
 
-@pytest.mark.parametrize("example", [SIX, SEVEN])
+@pytest.mark.parametrize("example", [SIX_AXIS, SEVEN_AXIS])
 def test_mass_and_inertia_are_those_of_mujoco(example: Path) -> None:
     """The arm's mass matrix follows from masses, centres and inertia alone, joint by joint behind each other."""
     spec = mujoco.MjSpec.from_file(str(example))
@@ -187,10 +205,10 @@ def test_mass_and_inertia_are_those_of_mujoco(example: Path) -> None:
 
 
 def test_arms_that_compute_the_same_have_one_hash(tmp_path: Path) -> None:
-    arm = read_arm(SIX)
-    assert arm.hash == read_arm(SIX, name="another").hash
-    assert arm.hash != read_arm(SIX, base=((0.0, 0.0, 0.1), (1.0, 0.0, 0.0, 0.0))).hash
-    assert arm.hash != read_arm(SIX, limits=limits(tmp_path, "[payload]\nmass = 0.5")).hash
+    arm = read_arm(SIX_AXIS)
+    assert arm.hash == read_arm(SIX_AXIS, name="another").hash
+    assert arm.hash != read_arm(SIX_AXIS, base=((0.0, 0.0, 0.1), (1.0, 0.0, 0.0, 0.0))).hash
+    assert arm.hash != read_arm(SIX_AXIS, limits=limits(tmp_path, "[payload]\nmass = 0.5")).hash
 
 
 def test_a_gripper_is_mounted_on_the_tools_frame() -> None:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 NUMBER = r"(-?\d+\.\d+)"
-SIX = ", ?".join([NUMBER] * 6)
+SIX_NUMBERS = ", ?".join([NUMBER] * 6)
 
 Motion = tuple[np.ndarray, np.ndarray]  # times (n,) [s], joints (n, 6) [rad]
 
@@ -14,13 +14,13 @@ Motion = tuple[np.ndarray, np.ndarray]  # times (n,) [s], joints (n, 6) [rad]
 def urscript(text: str) -> Motion:
     head, _, tail = text.partition("  local present = ")
     assert re.fullmatch(r"def [a-z]\w*\(\):\n(  # [ -~]+\n)+", head)
-    start = re.search(rf"local start = \[{SIX}\]\n", tail)
+    start = re.search(rf"local start = \[{SIX_NUMBERS}\]\n", tail)
     assert start
     rows, time = [(0.0, _joints(start.groups()))], 0.0
     for line in tail[tail.index("  servoj") :].splitlines():
         if line in ("  stopj(2.0)", "end"):
             continue
-        step = re.fullmatch(rf"  servoj\(\[{SIX}\], 0, 0, {NUMBER}, 0\.03, 300\)", line)
+        step = re.fullmatch(rf"  servoj\(\[{SIX_NUMBERS}\], 0, 0, {NUMBER}, 0\.03, 300\)", line)
         assert step, line
         time += float(step[7])
         rows.append((time, _joints(step.groups()[:6])))
@@ -38,7 +38,7 @@ def rapid(text: str) -> Motion:
             ), line
             continue
         move = re.fullmatch(
-            rf"    MoveAbsJ \[\[{SIX}\],\[9E9(?:,9E9){{5}}\]\], v1000 \\T:={NUMBER}, (z0|fine), tool0;", line
+            rf"    MoveAbsJ \[\[{SIX_NUMBERS}\],\[9E9(?:,9E9){{5}}\]\], v1000 \\T:={NUMBER}, (z0|fine), tool0;", line
         )
         assert move, line
         time += float(move[7])

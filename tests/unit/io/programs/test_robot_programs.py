@@ -17,7 +17,7 @@ from tests.unit.io.programs.interpreters import INTERPRETERS
 from tests.unit.io.programs.motions import a_motion
 
 ARM = Arm.of_variant()
-AWKWARD = "Plan “p”; in scene\n/END µm"
+AWKWARD_NAME = "Plan “p”; in scene\n/END µm"
 
 
 def still(rate: float, count: int = 5) -> SampledMotion:
@@ -58,7 +58,7 @@ def test_the_head_says_what_was_proved_and_what_was_not(middle: Plan, name: str)
 
 @pytest.mark.parametrize("name", TARGETS)
 def test_what_stands_in_a_note_does_not_end_a_remark(name: str) -> None:
-    motion = replace(still(FORMATS[name].rate), name="ä plan; END", notes=(AWKWARD,))
+    motion = replace(still(FORMATS[name].rate), name="ä plan; END", notes=(AWKWARD_NAME,))
     _, joints = INTERPRETERS[name](FORMATS[name].write(motion).decode("ascii"))
     assert joints.shape == (5, 6)
 

@@ -21,14 +21,14 @@ from tests.unit.io.readers.test_damage import damaged
 from tests.unit.io.readers.test_formats import NS, POSITIONS, TIMES, WXYZ, XYZW
 
 KINDS = (bags.POSE, bags.COVARIANT, bags.TRANSFORM, bags.TRANSFORMS, bags.ODOMETRY)
-LOGGED = 7_000_000  # [ns] after which a message was recorded
+LOG_TIME_NS = 7_000_000  # [ns] after which a message was recorded
 
 
 def motion(storage: str, topic: str = "/hand", kind: str = bags.POSE, **named: str) -> list[tuple[str, str, int, Any]]:
     make = Messages(storage)
     frame = named.pop("frame", "base")
     return [
-        (topic, kind, int(ns) + LOGGED, make.make(kind, int(ns), p, q, frame, **named))
+        (topic, kind, int(ns) + LOG_TIME_NS, make.make(kind, int(ns), p, q, frame, **named))
         for ns, p, q in zip(NS, POSITIONS, XYZW, strict=True)
     ]
 

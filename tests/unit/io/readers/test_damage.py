@@ -19,7 +19,7 @@ from teachpath.recording.settings import RecordingSettings
 from tests.unit.io.readers.test_formats import FILES
 
 FILES_EACH = 1112
-LONGEST = 2000  # characters of a sentence
+LONGEST_FILE = 2000  # characters of a sentence
 LIMITS, SETTINGS = ImportSettings(), RecordingSettings()
 PIECES = [
     b"",
@@ -78,7 +78,7 @@ def end_of(kind: str, number: int) -> str:
 @pytest.mark.parametrize("kind", FILES)
 def test_a_damaged_file_ends_in_a_sentence_or_in_sound_motions(kind: str) -> None:
     ends = [end_of(kind, number) for number in range(FILES_EACH)]
-    assert all(end == "read" or (name_of(kind) in end and len(end) < LONGEST) for end in ends)
+    assert all(end == "read" or (name_of(kind) in end and len(end) < LONGEST_FILE) for end in ends)
 
 
 def name_of(kind: str) -> str:

@@ -106,7 +106,7 @@ FILES = {
     "mat": ("hand.mat", mat(**ARRAYS)),
     "csv": ("hand.csv", text(np.column_stack([TIMES, POSITIONS, XYZW]), "time,px,py,pz,qx,qy,qz,qw")),
 }
-UNTURNED = {"vicon", "trc"}  # markers
+UNTURNED_FORMATS = {"vicon", "trc"}  # markers
 
 
 def read(content: bytes, name: str = "f.csv", **options: object) -> FileMotions:
@@ -120,7 +120,7 @@ def test_every_format_is_recognized_and_gives_the_same_motion(kind: str) -> None
     (track,) = read(content, name).tracks
     assert np.allclose(track.times, TIMES, atol=1e-6)
     assert np.allclose(track.positions, POSITIONS, atol=1e-6)
-    if kind in UNTURNED:
+    if kind in UNTURNED_FORMATS:
         assert track.orientations is None
     else:
         assert track.orientations is not None
@@ -161,24 +161,24 @@ def test_a_mat_file_that_cannot_be_read_is_said(content: bytes, sentence: str) -
         read(content, "hand.mat")
 
 
-PLAIN = np.column_stack([TIMES, POSITIONS])
+PLAIN_TABLE = np.column_stack([TIMES, POSITIONS])
 TABLES = {
-    "semicolons and decimal commas": (text(PLAIN, "t;x;y;z", ";").replace(b".", b","), {}),
-    "blanks": (text(PLAIN, "t x y z", " "), {}),
-    "tabs": (text(PLAIN, "t\tx\ty\tz", "\t"), {}),
-    "spaces behind commas": (text(PLAIN, "t, x, y, z", ", "), {}),
-    "a comma behind each row": (text(PLAIN, "t,x,y,z").replace(b"\n", b",\n"), {}),
-    "a comment": (b"# my tracker\n" + text(PLAIN, "t,x,y,z"), {}),
-    "capitals": (text(PLAIN, "T,X,Y,Z"), {}),
-    "no header": (text(PLAIN), {"columns": "t=1,x=2,y=3,z=4"}),
+    "semicolons and decimal commas": (text(PLAIN_TABLE, "t;x;y;z", ";").replace(b".", b","), {}),
+    "blanks": (text(PLAIN_TABLE, "t x y z", " "), {}),
+    "tabs": (text(PLAIN_TABLE, "t\tx\ty\tz", "\t"), {}),
+    "spaces behind commas": (text(PLAIN_TABLE, "t, x, y, z", ", "), {}),
+    "a comma behind each row": (text(PLAIN_TABLE, "t,x,y,z").replace(b"\n", b",\n"), {}),
+    "a comment": (b"# my tracker\n" + text(PLAIN_TABLE, "t,x,y,z"), {}),
+    "capitals": (text(PLAIN_TABLE, "T,X,Y,Z"), {}),
+    "no header": (text(PLAIN_TABLE), {"columns": "t=1,x=2,y=3,z=4"}),
     "other names": (
-        text(PLAIN[:, [1, 0, 2, 3]], "Position.X,Zeit,b,c"),
+        text(PLAIN_TABLE[:, [1, 0, 2, 3]], "Position.X,Zeit,b,c"),
         {"columns": "t=Zeit,x=Position.X,y=3,z=c"},
     ),
-    "milliseconds by name": (text(PLAIN * [1000, 1, 1, 1], "t_ms,x,y,z"), {}),
-    "milliseconds as said": (text(PLAIN * [1000, 1, 1, 1], "t,x,y,z"), {"time_unit": "ms"}),
-    "millimetres by name": (text(PLAIN * [1, 1000, 1000, 1000], "t,x [mm],y [mm],z [mm]"), {}),
-    "millimetres as said": (text(PLAIN * [1, 1000, 1000, 1000], "t,x,y,z"), {"units": "mm"}),
+    "milliseconds by name": (text(PLAIN_TABLE * [1000, 1, 1, 1], "t_ms,x,y,z"), {}),
+    "milliseconds as said": (text(PLAIN_TABLE * [1000, 1, 1, 1], "t,x,y,z"), {"time_unit": "ms"}),
+    "millimetres by name": (text(PLAIN_TABLE * [1, 1000, 1000, 1000], "t,x [mm],y [mm],z [mm]"), {}),
+    "millimetres as said": (text(PLAIN_TABLE * [1, 1000, 1000, 1000], "t,x,y,z"), {"units": "mm"}),
 }
 
 
@@ -193,13 +193,13 @@ def test_tables_of_every_kind_give_the_same_motion(what: str) -> None:
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (text(PLAIN * [1e3, 1, 1, 1], "t,x,y,z"), "t looks like ms: .* --time ms"),
-        (text(PLAIN * [1e6, 1, 1, 1], "t,x,y,z"), "t looks like us: .* --time us"),
-        (text(PLAIN * [1e9, 1, 1, 1], "t,x,y,z"), "t looks like ns: .* --time ns"),
-        (text(PLAIN * [1, 1e3, 1e3, 1e3], "t,x,y,z"), r"spans 390 m, limit 10; .*--units .*mm \(0\.39 m\)"),
-        (text(PLAIN), "no column for t, x, y, z; .*--columns t=1"),
-        (text(np.column_stack([PLAIN, TIMES]), "t,x,y,z,time"), "t and time could all be t; .*--columns t=..."),
-        (text(np.column_stack([PLAIN, XYZW[:, :2]]), "t,x,y,z,qx,qy"), "no column for qw, qz"),
+        (text(PLAIN_TABLE * [1e3, 1, 1, 1], "t,x,y,z"), "t looks like ms: .* --time ms"),
+        (text(PLAIN_TABLE * [1e6, 1, 1, 1], "t,x,y,z"), "t looks like us: .* --time us"),
+        (text(PLAIN_TABLE * [1e9, 1, 1, 1], "t,x,y,z"), "t looks like ns: .* --time ns"),
+        (text(PLAIN_TABLE * [1, 1e3, 1e3, 1e3], "t,x,y,z"), r"spans 390 m, limit 10; .*--units .*mm \(0\.39 m\)"),
+        (text(PLAIN_TABLE), "no column for t, x, y, z; .*--columns t=1"),
+        (text(np.column_stack([PLAIN_TABLE, TIMES]), "t,x,y,z,time"), "t and time could all be t; .*--columns t=..."),
+        (text(np.column_stack([PLAIN_TABLE, XYZW[:, :2]]), "t,x,y,z,qx,qy"), "no column for qw, qz"),
         (text(np.column_stack([TIMES, POSITIONS, POSITIONS, K]), "t,x,y,z,qx,qy,qz,qw"), "has length"),
         (motive().replace(b"hand,hand,hand,hand,hand,hand,hand,hand:1", b"a,a,a,a,a,a,a,b"), None),
     ],
@@ -232,7 +232,7 @@ def test_one_of_several_is_chosen_by_its_name() -> None:
 
 
 def test_what_was_understood_is_told() -> None:
-    told = "; ".join(read(text(np.column_stack([PLAIN, K]), "t,x,y,z,temperature")).understood)
+    told = "; ".join(read(text(np.column_stack([PLAIN_TABLE, K]), "t,x,y,z,temperature")).understood)
     assert "time in s (t); position in m (x, y, z); no orientation; not read: temperature" in told
 
 

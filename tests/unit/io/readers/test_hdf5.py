@@ -18,7 +18,7 @@ from teachpath.io.readers.registry import read_motions, reads_from_disk, recogni
 from tests.unit.io.readers.test_damage import damaged
 from tests.unit.io.readers.test_formats import ARRAYS, COUNT, POSITIONS, TIMES, WXYZ, XYZW, text
 
-CLOSED = np.where(np.arange(COUNT) < 10, -1.0, 1.0)
+GRIPPER_COLUMN = np.where(np.arange(COUNT) < 10, -1.0, 1.0)
 
 
 def read(content: bytes, name: str = "demo.hdf5", **options: Any) -> FileMotions:
@@ -45,7 +45,7 @@ def robomimic(arms: int = 1, *, width: int = 7, numbers: tuple[int, ...] = (0, 1
         for number in numbers:
             demonstration = data.create_group(f"demo_{number}")
             actions = np.zeros((COUNT, width * arms))
-            actions[:, width - 1 :: width] = CLOSED[:, None]
+            actions[:, width - 1 :: width] = GRIPPER_COLUMN[:, None]
             demonstration.create_dataset("actions", data=actions, compression="gzip")
             for arm in range(arms):
                 name = f"obs/robot{arm}_"
@@ -68,7 +68,7 @@ def test_demonstrations_of_robomimic_are_motions_with_their_grasp() -> None:
         assert track.orientations is not None
         assert np.allclose(track.orientations, WXYZ)
         assert track.closure is not None
-        assert np.array_equal(track.closure > 0.5, CLOSED > 0.0)
+        assert np.array_equal(track.closure > 0.5, GRIPPER_COLUMN > 0.0)
 
 
 def test_a_file_of_any_size_is_read_where_it_lies(tmp_path: Path) -> None:

@@ -23,13 +23,13 @@ from tests.unit.learning import synthetic
 
 SETTINGS = LearningSettings(repeats=0)
 U = np.linspace(0.0, 1.0, 201)
-AWAY = np.array([0.08, 0.05, 0.0])
+GOAL_OFFSET = np.array([0.08, 0.05, 0.0])
 
 
 def several(count: int, way: int = 1, *, seed: int = 1, goal_spread: float = 0.0) -> list[Trajectory]:
     rng = np.random.default_rng([seed, way])
     goals = synthetic.GOAL + rng.normal(0, goal_spread, (count, 3)) * [1, 1, 0]
-    return [synthetic.demonstration(rng, synthetic.WAYS[way], goal=goal) for goal in goals]
+    return [synthetic.demonstration(rng, synthetic.WAY_POINTS[way], goal=goal) for goal in goals]
 
 
 def path_of(shown: list[Trajectory]) -> LearnedPath:
@@ -37,7 +37,7 @@ def path_of(shown: list[Trajectory]) -> LearnedPath:
     return learn(named, replace(SETTINGS, clusters=1)).paths[0]
 
 
-def to(path: LearnedPath, shift: Array = AWAY) -> Target:
+def to(path: LearnedPath, shift: Array = GOAL_OFFSET) -> Target:
     return Target(path.curve(0.0), path.curve(1.0) + shift)
 
 
@@ -63,7 +63,7 @@ def test_at_its_own_ends_a_path_stays_as_it_is(learned: LearnedPath, shown: list
 
 def test_the_ends_are_exact(learned: LearnedPath, adapted: AdaptedPath) -> None:
     np.testing.assert_allclose(adapted.curve(0.0), learned.curve(0.0), atol=1e-9)
-    np.testing.assert_allclose(adapted.curve(1.0), learned.curve(1.0) + AWAY, atol=1e-9)
+    np.testing.assert_allclose(adapted.curve(1.0), learned.curve(1.0) + GOAL_OFFSET, atol=1e-9)
 
 
 def test_an_adapted_path_adapted_back_is_the_learned_one_but_for_the_fit(

@@ -20,7 +20,7 @@ def shown(count: int, *, start: float, goal: float, ways: tuple[int, ...] = (1,)
     found = {}
     for number in range(count):
         shift, more = rng.normal(0, start, 3) * [1, 1, 0], rng.normal(0, goal, 3) * [1, 1, 0]
-        way = synthetic.WAYS[ways[number % len(ways)]]
+        way = synthetic.WAY_POINTS[ways[number % len(ways)]]
         one = synthetic.demonstration(rng, way, goal=synthetic.GOAL + more - shift)
         found[f"demo-{number}"] = Trajectory(one.times, one.positions + shift, one.orientations)
     return found
@@ -74,7 +74,8 @@ def test_one_place_or_two_that_are_shown_again_are_no_moving_task(places: int) -
     rng = np.random.default_rng(4)
     goals = [synthetic.GOAL, synthetic.GOAL + np.array([0.15, 0.0, 0.0])][:places]
     demonstrations = {
-        str(number): synthetic.demonstration(rng, synthetic.WAYS[1], goal=goals[number % places]) for number in range(6)
+        str(number): synthetic.demonstration(rng, synthetic.WAY_POINTS[1], goal=goals[number % places])
+        for number in range(6)
     }
     found = learn(demonstrations, SETTINGS)
     assert len(found.clusters) == places

@@ -15,12 +15,14 @@ from teachpath.records import Array, Trajectory
 from tests.unit.learning import synthetic
 
 SEPARATION = LearningSettings().min_separation
-SAME = re.compile(r"clusters ([\d, ]+) and (\d+) do the task in the same way, .* to goals up to (\d+) cm apart")
+SAME_CLUSTERS = re.compile(
+    r"clusters ([\d, ]+) and (\d+) do the task in the same way, .* to goals up to (\d+) cm apart"
+)
 
 
 def moved(way: int, shift: Array, seed: int) -> Trajectory:
     rng = np.random.default_rng([seed, way])
-    return synthetic.demonstration(rng, synthetic.WAYS[way], goal=synthetic.GOAL + shift)
+    return synthetic.demonstration(rng, synthetic.WAY_POINTS[way], goal=synthetic.GOAL + shift)
 
 
 def courses(shown: list[Trajectory]) -> Array:
@@ -44,18 +46,24 @@ def test_learning_says_which_clusters_do_the_task_in_the_same_way() -> None:
     shown = {str(i): moved(1, goals[i % 2], i) for i in range(8)}
     learned = learn(shown, LearningSettings(repeats=0))
     assert len(learned.clusters) == 2
-    (told,) = [match for note in learned.notes if (match := SAME.match(note))]
+    (told,) = [match for note in learned.notes if (match := SAME_CLUSTERS.match(note))]
     assert told.group(1, 2) == ("1", "2")
     assert float(told[3]) == pytest.approx(15, abs=2)
 
 
 def test_nothing_is_said_of_ways_between_the_same_ends_nor_of_one_place() -> None:
     for demonstrations in (synthetic.experiment_1(3), synthetic.experiment_2(3, wiggle=0.0)):
-        assert not [note for note in learn(demonstrations, LearningSettings(repeats=0)).notes if SAME.match(note)]
+        assert not [
+            note for note in learn(demonstrations, LearningSettings(repeats=0)).notes if SAME_CLUSTERS.match(note)
+        ]
 
 
 def test_each_way_has_its_own_sentence() -> None:
     plan = [(0, 0.0), (2, 0.0), (0, 0.15), (2, 0.15)]
     shown = courses([moved(way, np.array([shift, 0, 0]), i) for i, (way, shift) in enumerate(plan)])
-    told = [match.group(1, 2) for note in moving_ends(shown, min_separation=SEPARATION) if (match := SAME.match(note))]
+    told = [
+        match.group(1, 2)
+        for note in moving_ends(shown, min_separation=SEPARATION)
+        if (match := SAME_CLUSTERS.match(note))
+    ]
     assert told == [("1", "3"), ("2", "4")]

@@ -12,7 +12,14 @@ from teachpath.learning.clustering.subsampled_clustering import cluster_paths
 from teachpath.learning.learn import comparable_paths
 from teachpath.learning.settings import LearningSettings
 from teachpath.records import Array, Trajectory
-from tests.experiments.clustering_cases import TIDY, Labelled, differ_in_part, known_ways, one_way, two_agree_exactly
+from tests.experiments.clustering_cases import (
+    TIDY_SPREADS,
+    Labelled,
+    differ_in_part,
+    known_ways,
+    one_way,
+    two_agree_exactly,
+)
 
 
 def paths_of(shown: list[Trajectory]) -> tuple[Array, float]:
@@ -30,7 +37,7 @@ def groups(labels: Array) -> set[frozenset[int]]:
 
 @pytest.mark.parametrize(
     ("shown", "truth"),
-    [differ_in_part(seed, (3, 3), 0.06) for seed in range(3)] + [differ_in_part(4, (3, 2), 0.03, **TIDY)],
+    [differ_in_part(seed, (3, 3), 0.06) for seed in range(3)] + [differ_in_part(4, (3, 2), 0.03, **TIDY_SPREADS)],
 )
 def test_a_bump_over_a_third_of_the_path_is_doubted_and_the_next_cut(shown: list[Trajectory], truth: list[int]) -> None:
     found = clustered(shown)

@@ -46,7 +46,9 @@ def test_a_single_way_stays_whole(seed: int, wiggle: float) -> None:
 def test_a_way_shown_once_is_a_cluster(sizes: tuple[int, ...], seed: int) -> None:
     rng = np.random.default_rng(seed)
     truth = rng.permutation(np.repeat([1, 2, 3], sizes))
-    labels = grouped({str(i): synthetic.demonstration(rng, synthetic.WAYS[w - 1]) for i, w in enumerate(truth)}).labels
+    labels = grouped(
+        {str(i): synthetic.demonstration(rng, synthetic.WAY_POINTS[w - 1]) for i, w in enumerate(truth)}
+    ).labels
     np.testing.assert_array_equal(labels[:, None] == labels, truth[:, None] == truth)
 
 

@@ -15,7 +15,7 @@ from teachpath.nurbs import Curve
 from teachpath.records import Array
 from tests.unit.learning import synthetic
 
-FINE = np.linspace(0.0, 1.0, 40_001)
+FINE_PARAMETERS = np.linspace(0.0, 1.0, 40_001)
 
 
 def zigzag(seed: int) -> Array:
@@ -43,7 +43,7 @@ KINDS: list[Callable[[int], Array]] = [zigzag, corners, loop]
 def away(curve: Curve, points: Array) -> float:
     """Largest distance of a place of the curve from the polygon of the points."""
     gaps = np.linspace(points[:-1], points[1:], 200, axis=1).reshape(-1, points.shape[1])
-    return float(cKDTree(gaps).query(curve(FINE))[0].max())
+    return float(cKDTree(gaps).query(curve(FINE_PARAMETERS))[0].max())
 
 
 @pytest.mark.parametrize("shape", KINDS)
@@ -56,8 +56,8 @@ def test_the_bound_holds_in_both_directions_and_the_ends_are_exact(
     gap = np.linalg.norm(np.diff(points, axis=0), axis=1).max()
     for bound in (0.1, 0.02, 0.004):
         curve = approximate_from_polygon(points, bound, degree=degree).curve
-        assert cKDTree(curve(FINE)).query(points)[0].max() <= bound + 1e-4
-        assert cKDTree(points).query(curve(FINE))[0].max() <= bound + gap / 2
+        assert cKDTree(curve(FINE_PARAMETERS)).query(points)[0].max() <= bound + 1e-4
+        assert cKDTree(points).query(curve(FINE_PARAMETERS))[0].max() <= bound + gap / 2
         assert away(curve, points) <= bound + gap / 200
         np.testing.assert_allclose(curve(np.array([0.0, 1.0])), points[[0, -1]], rtol=0, atol=1e-12)
 
@@ -68,8 +68,8 @@ def test_without_a_bound_the_curve_is_the_polygon(shape: Callable[[int], Array],
     points = shape(7)
     approximation = approximate_from_polygon(points, 0.0, degree=degree)
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    polygon = np.column_stack([np.interp(FINE * s[-1], s, axis) for axis in points.T])
-    np.testing.assert_allclose(approximation.curve(FINE), polygon, rtol=0, atol=1e-11)
+    polygon = np.column_stack([np.interp(FINE_PARAMETERS * s[-1], s, axis) for axis in points.T])
+    np.testing.assert_allclose(approximation.curve(FINE_PARAMETERS), polygon, rtol=0, atol=1e-11)
 
 
 def test_points_on_a_line_need_no_knots() -> None:
@@ -83,7 +83,7 @@ def test_the_bound_is_widened_until_the_control_points_suffice_and_is_kept_then(
     found = approximate_from_polygon(points, 0.002, degree=3, most=most)
     assert len(found.curve.weights) <= most
     assert found.bound > 0.002
-    assert cKDTree(found.curve(FINE)).query(points)[0].max() <= found.bound + 1e-4
+    assert cKDTree(found.curve(FINE_PARAMETERS)).query(points)[0].max() <= found.bound + 1e-4
     assert away(found.curve, points) <= found.bound + 1e-3
 
 

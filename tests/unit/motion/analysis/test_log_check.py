@@ -11,7 +11,7 @@ from teachpath.motion.planning.certificate import plan_trajectory
 from teachpath.motion.planning.plan import plan
 from teachpath.motion.settings import MotionSettings
 from teachpath.records import Plan
-from tests.unit.motion.ways import FAR, MIDDLE, way
+from tests.unit.motion.ways import FAR_X, MIDDLE, way
 
 ARM = Arm.of_variant()
 
@@ -87,8 +87,8 @@ def test_another_path_or_other_limits_are_broken(planned: Plan) -> None:
     assert any("beyond its limit" in f for f in check_log(beyond, None, ARM).faults)
     far = tool_pose(np.array(MotionSettings().home), ARM)[:3, 3]
     rest = SetpointLog(faster.times, np.tile(MotionSettings().home, (len(faster.times), 1)))
-    assert np.linalg.norm(way(FAR).curve(0.0) - far) > 0.01
-    assert any("never comes to the start" in f for f in check_log(rest, way(FAR).curve, ARM).faults)
+    assert np.linalg.norm(way(FAR_X).curve(0.0) - far) > 0.01
+    assert any("never comes to the start" in f for f in check_log(rest, way(FAR_X).curve, ARM).faults)
 
 
 def test_a_tool_that_is_faster_than_its_limit_is_found() -> None:

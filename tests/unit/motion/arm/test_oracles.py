@@ -21,9 +21,9 @@ from tests.unit.motion.arm.screws import Body, Screws
 
 ARM = Arm.of_variant()
 NOMINAL = np.array([0, np.pi / 4, np.pi, 0, np.pi / 4, 0])  # `qn` of the toolbox
-ONES, NOTHING = np.ones(6), np.zeros(6)
+UNIT_VECTOR, NO_LOAD = np.ones(6), np.zeros(6)
 # Printed with four decimals, and taken from ones with four more.
-PRINTED = 5.1e-5
+PRINTED_TOLERANCE = 5.1e-5
 
 every_arm = pytest.mark.parametrize("arm", [Arm.of_variant(name) for name in VARIANTS], ids=list(VARIANTS))
 
@@ -56,12 +56,12 @@ class Bare:
 @pytest.mark.parametrize(
     ("velocity", "acceleration", "gravity", "published"),
     [
-        (NOTHING, NOTHING, 9.81, [0.0, 31.6399, 6.0351, 0.0, 0.0283, 0.0]),
-        (NOTHING, ONES, 9.81, [3.35311, 36.0025, 7.42596, 0.190043, 0.203441, 0.194133]),
-        (ONES, ONES, 9.81, [32.4952, 60.867, 17.7436, 1.45452, 1.29911, 0.713781]),
-        (ONES, NOTHING, 9.81, [29.1421, 56.5044, 16.3528, 1.26448, 1.12392, 0.519648]),
-        (ONES, ONES, 0.0, [32.4952, 29.2271, 11.7085, 1.45452, 1.27086, 0.713781]),
-        (NOTHING, np.array([1.0, 2, 3, 1, 2, 3]), 0.0, [3.1500, 9.4805, 3.6189, 0.1901, 0.3519, 0.5823]),
+        (NO_LOAD, NO_LOAD, 9.81, [0.0, 31.6399, 6.0351, 0.0, 0.0283, 0.0]),
+        (NO_LOAD, UNIT_VECTOR, 9.81, [3.35311, 36.0025, 7.42596, 0.190043, 0.203441, 0.194133]),
+        (UNIT_VECTOR, UNIT_VECTOR, 9.81, [32.4952, 60.867, 17.7436, 1.45452, 1.29911, 0.713781]),
+        (UNIT_VECTOR, NO_LOAD, 9.81, [29.1421, 56.5044, 16.3528, 1.26448, 1.12392, 0.519648]),
+        (UNIT_VECTOR, UNIT_VECTOR, 0.0, [32.4952, 29.2271, 11.7085, 1.45452, 1.27086, 0.713781]),
+        (NO_LOAD, np.array([1.0, 2, 3, 1, 2, 3]), 0.0, [3.1500, 9.4805, 3.6189, 0.1901, 0.3519, 0.5823]),
     ],
 )
 def test_inverse_dynamics_is_the_published_one(
@@ -74,31 +74,31 @@ def test_inverse_dynamics_is_the_published_one(
 def test_inertia_matrix_is_the_published_one() -> None:
     # P. Corke: Robotics, Vision and Control, 2nd ed., Springer 2017, section 9.2, with the motors.
     bare = Bare()
-    columns = [bare.torques(NOMINAL, NOTHING, unit, 0.0) for unit in np.eye(6)]
+    columns = [bare.torques(NOMINAL, NO_LOAD, unit, 0.0) for unit in np.eye(6)]
     published = np.diag([3.6594, 4.4137, 0.9378, 0.1925, 0.1713, 0.1941])
     for row, column, value in ((0, 1, -0.4044), (0, 2, 0.1006), (0, 3, -0.0025), (1, 2, 0.3509), (1, 4, 0.0024)):
         published[row, column] = published[column, row] = value
     published[2, 4] = published[4, 2] = 0.0015
-    np.testing.assert_allclose(columns, published, atol=PRINTED)
+    np.testing.assert_allclose(columns, published, atol=PRINTED_TOLERANCE)
 
 
 def test_gravity_load_elsewhere_is_the_published_one() -> None:
     # P. Corke: Robotics Toolbox for MATLAB, gravload([1 2 3 4 5 6]).
-    torques = Bare().torques(np.arange(1.0, 7.0), NOTHING, NOTHING)
-    np.testing.assert_allclose(torques, [0.0, -7.9683, 8.4581, -0.0197, 0.0027, 0.0], atol=PRINTED)
+    torques = Bare().torques(np.arange(1.0, 7.0), NO_LOAD, NO_LOAD)
+    np.testing.assert_allclose(torques, [0.0, -7.9683, 8.4581, -0.0197, 0.0027, 0.0], atol=PRINTED_TOLERANCE)
 
 
 def test_pose_and_jacobian_are_the_published_ones() -> None:
     # The same book, section 7.2: the wrist centre from the shoulder; the toolbox's tests: manipulabilities.
     frame = link_frames(NOMINAL, ARM)[6]
     wrist = frame[:3, 3] - ARM.links[5].d * frame[:3, 2] - [0.0, 0.0, ARM.links[0].d]
-    np.testing.assert_allclose(wrist, [0.5963, -0.1501, -0.01435], atol=PRINTED)
+    np.testing.assert_allclose(wrist, [0.5963, -0.1501, -0.01435], atol=PRINTED_TOLERANCE)
     np.testing.assert_allclose(frame[:3, :3], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]], atol=1e-12)
     at_tool = jacobian(NOMINAL, ARM)
     hand = (ARM.links[5].d + ARM.tool_length) * frame[:3, 2]
     at_wrist = at_tool[:3] - np.cross(at_tool[3:].T, hand).T
     volumes = [np.sqrt(np.linalg.det(j @ j.T)) for j in (at_tool, at_wrist, at_tool[3:])]
-    np.testing.assert_allclose(volumes, [0.0786, 0.111181, 2.44949], atol=PRINTED)
+    np.testing.assert_allclose(volumes, [0.0786, 0.111181, 2.44949], atol=PRINTED_TOLERANCE)
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ def test_inverse_dynamics_is_that_of_the_screws(arm: Arm, configurations: np.nda
     model = mujoco.MjModel.from_xml_string(write_mjcf(empty_scene(), arm))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     data, other = mujoco.MjData(model), screws_of(arm)
-    bodies, zero = [], link_frames(NOTHING, arm)
+    bodies, zero = [], link_frames(NO_LOAD, arm)
     for number, link in enumerate(arm.links, start=1):
         solids = [(max(link.mass, 1e-3), link.com, physical_inertia(link))]
         if number == 6:

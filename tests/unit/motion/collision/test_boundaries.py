@@ -13,7 +13,7 @@ from tests.unit.motion.collision.solids import Surface
 ARM = Arm.of_variant()
 HOME = np.array(MotionSettings().home)
 TIP = 0.005  # m, of the fingers below the grasp point
-TURNED = (np.cos(np.pi / 12), 0.0, 0.0, np.sin(np.pi / 12))
+TURNED_ORIENTATION = (np.cos(np.pi / 12), 0.0, 0.0, np.sin(np.pi / 12))
 
 
 def over(x: float, y: float, z: float) -> np.ndarray:
@@ -75,7 +75,7 @@ def test_arm_and_object_are_measured_against_zones() -> None:
     assert aside.distance <= 0.03 + 1e-6
 
 
-@pytest.mark.parametrize("orientation", [(1.0, 0.0, 0.0, 0.0), TURNED])
+@pytest.mark.parametrize("orientation", [(1.0, 0.0, 0.0, 0.0), TURNED_ORIENTATION])
 def test_a_keep_in_zone_is_left_by_the_point_that_is_farthest_out(orientation: tuple[float, ...]) -> None:
     w, _, _, z = orientation
     zone = Shape("cell", "box", (1.4, 1.2, 1.1), (0.3, 0.05, 0.75), orientation=(w, 0.0, 0.0, z))

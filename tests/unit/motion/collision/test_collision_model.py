@@ -116,7 +116,7 @@ BALL = Shape("ball", "sphere", (0.05,), (0.5, 0.0, 0.75))
 CUBE = tuple((x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0))
 
 
-TURNED = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
+TURNED_ORIENTATION = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ TURNED = (np.cos(np.pi / 8), 0.0, 0.0, np.sin(np.pi / 8))
         (BALL, np.hypot(0.07, 0.02) - 0.05),
         (Shape("box", "box", (0.1, 0.1, 0.1), BALL.position), 0.02),
         (
-            Shape("turned", "box", (0.1, 0.1, 0.1), BALL.position, orientation=TURNED),
+            Shape("turned", "box", (0.1, 0.1, 0.1), BALL.position, orientation=TURNED_ORIENTATION),
             (0.09 - np.sqrt(0.005)) / np.sqrt(2),
         ),
         (Shape("mesh", "mesh", (0.05,), BALL.position, vertices=CUBE), 0.02),

@@ -15,7 +15,7 @@ from teachpath.motion.arm.serial_mjcf import write_serial_mjcf
 from teachpath.motion.collision.builtin_scenes import empty_scene
 from teachpath.motion.collision.self_collision import self_collision_pairs
 from teachpath.motion.settings import MotionSettings
-from tests.unit.io.arm_models.models import SEVEN, changed
+from tests.unit.io.arm_models.models import SEVEN_AXIS, changed
 
 
 def test_every_pair_of_links_is_a_neighbour_or_decided() -> None:
@@ -30,7 +30,7 @@ def test_every_pair_of_links_is_a_neighbour_or_decided() -> None:
 
 def test_solids_that_always_overlap_are_not_checked(tmp_path: Path) -> None:
     large = changed(
-        tmp_path, SEVEN, ('fromto="0 0 -0.14 0 0 -0.06" size="0.06"', 'fromto="0 0 -0.3 0 0 -0.06" size="0.1"')
+        tmp_path, SEVEN_AXIS, ('fromto="0 0 -0.14 0 0 -0.06" size="0.06"', 'fromto="0 0 -0.3 0 0 -0.06" size="0.1"')
     )
     pairs = self_collision_pairs(read_arm(large))
     assert (1, 3) in pairs.overlapping

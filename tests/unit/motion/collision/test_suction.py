@@ -21,7 +21,7 @@ from tests.unit.motion.ways import MIDDLE, way
 SETTINGS = MotionSettings(gripper="suction")
 ARM = Arm.of_settings(SETTINGS)
 BOX = Shape("box", "box", (0.04, 0.06, 0.08), (0.0, 0.0, 0.0))
-CAN = Shape("can", "cylinder", (0.02, 0.1), (0.0, 0.0, 0.0))
+CAN_SHAPE = Shape("can", "cylinder", (0.02, 0.1), (0.0, 0.0, 0.0))
 
 
 def pose(
@@ -48,8 +48,8 @@ def test_a_face_that_the_lip_touches_wholly_is_taken(place: tuple[float, float])
 def test_a_box_is_taken_by_any_face_and_a_cylinder_by_its_end() -> None:
     on_its_side = pose(half=0.03, turn=lean(np.pi / 2))
     assert grasp_fault(BOX, on_its_side, ARM) == ""
-    assert grasp_fault(CAN, pose(half=0.05), ARM) == ""
-    assert "round side" in grasp_fault(CAN, pose(half=0.02, turn=lean(np.pi / 2)), ARM)
+    assert grasp_fault(CAN_SHAPE, pose(half=0.05), ARM) == ""
+    assert "round side" in grasp_fault(CAN_SHAPE, pose(half=0.02, turn=lean(np.pi / 2)), ARM)
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_a_box_is_taken_by_any_face_and_a_cylinder_by_its_end() -> None:
     [
         (BOX, pose(0.008), "over the edge of box by 3"),
         (BOX, pose(y=0.02), "over the edge of box by 5"),
-        (CAN, pose(0.01, half=0.05), "over the edge of can by 5"),
+        (CAN_SHAPE, pose(0.01, half=0.05), "over the edge of can by 5"),
         (BOX, pose(gap=0.01), "ends 1 cm above the face"),
         (BOX, pose(gap=-0.01), "ends 1 cm below the face"),
         (BOX, pose(turn=lean(0.1)), "turned by 6 deg"),

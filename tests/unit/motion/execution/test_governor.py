@@ -19,13 +19,13 @@ from teachpath.motion.timing.limit_margins import SYMMETRIC_MARGINS, limit_uses
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint_path
 from teachpath.motion.timing.timing import time_tool_path
 from teachpath.nurbs import Curve
-from tests.unit.motion.ways import FAR, NEAR, hooked, wandering, way
+from tests.unit.motion.ways import FAR_X, NEAR_X, hooked, wandering, way
 
 ARM = Arm.of_variant()
 
 DT = 0.004
 LIMIT = 1.0 + 1e-9
-CURVES = {"near": way(NEAR).curve, "far": way(FAR, degree=5).curve, "hooked": hooked(), "wandering": wandering(1)}
+CURVES = {"near": way(NEAR_X).curve, "far": way(FAR_X, degree=5).curve, "hooked": hooked(), "wandering": wandering(1)}
 
 
 def track_of(curve: Curve) -> TimedTrajectory:

@@ -18,7 +18,7 @@ from teachpath.records import Shape
 BASE = ((0.05, 0.0, 0.5), (1.0, 0.0, 0.0, 0.0))
 HOMES = {"six-axis": (0.0, -0.2, 1.9, -0.13, -1.57, 0.0), "seven-axis": (0.0, 0.0, 0.0, -1.55, 0.0, 1.55, 0.0)}
 SETTINGS = MotionSettings()
-DT, EVERY, SHARE = 0.004, 5, 0.5
+DT, TARGET_STRIDE, SHARE = 0.004, 5, 0.5
 
 
 @pytest.fixture(params=HOMES)
@@ -32,7 +32,7 @@ def follow(follower: TeleopFollower, hand: np.ndarray, periods: int) -> np.ndarr
     """Hold the hand at a place; return the setpoints."""
     sent = []
     for k in range(periods):
-        if k % EVERY == 0:
+        if k % TARGET_STRIDE == 0:
             follower.set_hand(hand, k)
         sent.append(follower.step()[0])
         follower.advance_planning()

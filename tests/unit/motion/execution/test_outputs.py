@@ -99,10 +99,14 @@ def test_a_plan_with_an_output_is_another_plan(gluing: Plan, middle: Plan) -> No
     assert gluing.certificate.digest != middle.certificate.digest
 
 
-REFUSED = {"tool output": ("", 0.0, 0.0), "start of -1 s": ("glue", -1.0, 0.0), "end of 61 s": ("glue", 0.0, 61.0)}
+REFUSED_OUTPUTS = {
+    "tool output": ("", 0.0, 0.0),
+    "start of -1 s": ("glue", -1.0, 0.0),
+    "end of 61 s": ("glue", 0.0, 61.0),
+}
 
 
-@pytest.mark.parametrize("said", REFUSED)
+@pytest.mark.parametrize("said", REFUSED_OUTPUTS)
 def test_an_output_without_a_name_or_with_an_endless_rest_is_refused(said: str) -> None:
     with pytest.raises(UnusableInput, match=said):
-        ToolOutput(*REFUSED[said])
+        ToolOutput(*REFUSED_OUTPUTS[said])

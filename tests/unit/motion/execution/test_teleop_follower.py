@@ -20,7 +20,7 @@ ARM = Arm.of_variant()
 
 SETTINGS = MotionSettings()
 HOME = np.array(SETTINGS.home)
-DT, EVERY = 0.004, 5  # control period, and periods between two samples of the hand
+DT, TARGET_STRIDE = 0.004, 5  # control period, and periods between two samples of the hand
 SHARE = 0.5
 SLOW_ARM = replace(ARM, tool_speed=0.1)
 
@@ -39,7 +39,7 @@ class Session:
         """Hold the hand at a place, turned by a rotation vector, for some periods; return the tool's place."""
         orientation = None if turn is None else Rotation.from_rotvec(turn).as_matrix()
         for k in range(periods):
-            if hand is not None and k % EVERY == 0:
+            if hand is not None and k % TARGET_STRIDE == 0:
                 self.follower.set_hand(hand, len(self.sent), orientation)
             self.states.append(np.array(self.follower.step()))
             self.sent.append(self.states[-1][0])

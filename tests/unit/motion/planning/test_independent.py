@@ -7,16 +7,16 @@ import pytest
 
 from teachpath.motion.planning.plan import plan
 from teachpath.records import Scene, Shape
-from tests.plan_checker.checker import GRIP, HIGH, LOW, Solids, frames, judge
+from tests.plan_checker.checker import GRIP, LOWER_LIMITS, UPPER_LIMITS, Solids, frames, judge
 from tests.plan_checker.exhaustive_search import configurations, search
 from tests.plan_checker.random_cases import random_case, streamed
 from tests.unit.motion.collision.solids import Surface
 from tests.unit.motion.ways import learned
 
-ACCEPTED = (3, 4)
+ACCEPTED_CASES = (3, 4)
 
 
-@pytest.mark.parametrize("seed", ACCEPTED)
+@pytest.mark.parametrize("seed", ACCEPTED_CASES)
 def test_an_accepted_plan_keeps_everything_when_it_is_streamed(seed: int) -> None:
     curve, scene = random_case(seed)
     made = plan(learned(curve), scene)
@@ -27,7 +27,7 @@ def test_an_accepted_plan_keeps_everything_when_it_is_streamed(seed: int) -> Non
 
 
 def test_the_judge_of_refusals_knows_every_configuration_of_a_plan_and_what_blocks_it() -> None:
-    curve, scene = random_case(ACCEPTED[0])
+    curve, scene = random_case(ACCEPTED_CASES[0])
     made = plan(learned(curve), scene)
     for q in made.joints[:: len(made.joints) // 7]:
         pose = frames(q)[6]
@@ -40,14 +40,14 @@ def test_the_judge_of_refusals_knows_every_configuration_of_a_plan_and_what_bloc
 
 def test_the_judge_puts_every_solid_where_the_simulated_arm_has_it() -> None:
     surface, bodies = Surface(), Solids(Scene("nothing"))
-    for q in np.random.default_rng(1).uniform(LOW, HIGH, (20, 6)):
+    for q in np.random.default_rng(1).uniform(LOWER_LIMITS, UPPER_LIMITS, (20, 6)):
         points, drawn = surface(q[None])[0], bodies.points(q)
         np.testing.assert_allclose(drawn.min(axis=0), points.min(axis=0), atol=2e-3)  # a round rim has finitely many
         np.testing.assert_allclose(drawn.max(axis=0), points.max(axis=0), atol=2e-3)
 
 
 def test_the_checker_notices_what_is_wrong() -> None:
-    curve, scene = random_case(ACCEPTED[0])
+    curve, scene = random_case(ACCEPTED_CASES[0])
     sent = streamed(plan(learned(curve), scene))
     sent[len(sent) // 2 :, 0] += 2e-3
     found = judge(sent, curve, scene, every=999)

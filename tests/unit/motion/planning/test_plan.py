@@ -16,7 +16,7 @@ from teachpath.motion.refusals import describe
 from teachpath.motion.settings import MotionSettings
 from teachpath.nurbs import Curve
 from teachpath.records import Plan, Shape
-from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, learned, way
+from tests.unit.motion.ways import FAR_X, MIDDLE, NEAR_X, clamped, learned, way
 
 ARM = Arm.of_variant()
 TILTED_TOOL = MotionSettings(
@@ -31,7 +31,7 @@ def middle() -> Plan:
 
 
 @pytest.mark.parametrize("degree", [3, 5])
-@pytest.mark.parametrize("x", [NEAR, MIDDLE, FAR])
+@pytest.mark.parametrize("x", [NEAR_X, MIDDLE, FAR_X])
 def test_the_three_ways_of_the_paper_keep_every_limit_and_the_path(x: float, degree: int) -> None:
     path = way(x, degree=degree)
     made = plan(path, paper_scene())

@@ -20,7 +20,7 @@ from tests.plan_checker.checker import judge, tool_speed
 from tests.unit.motion.ways import MIDDLE, clamped, hooked, learned, wandering, way
 
 RATE = 250.0
-EXACTLY = 1.0 + 1e-6
+ROUNDING_FACTOR = 1.0 + 1e-6
 # As near to singular poses as the arm can go: past its column, with elbow and wrist much faster than the tool, and at
 # the end of its reach.
 NEARLY_SINGULAR = replace(MotionSettings(), least_singular=0.003)
@@ -59,8 +59,8 @@ def test_no_motion_of_an_execution_is_faster(name: str, limit: float) -> None:
     settings, arm = slowly(limit)
     made = plan(learned(CURVES[name]), empty_scene(), settings)
     sent = executed(made, settings, arm)
-    assert 0.9 * limit < tool_speed(sent) <= limit * EXACTLY
-    assert difference_speeds(sent, RATE, arm).max() <= limit * EXACTLY
+    assert 0.9 * limit < tool_speed(sent) <= limit * ROUNDING_FACTOR
+    assert difference_speeds(sent, RATE, arm).max() <= limit * ROUNDING_FACTOR
     assert made.certificate.tool_speed is not None
     assert made.certificate.tool_speed.value <= limit
 
@@ -69,7 +69,7 @@ def test_no_command_makes_it_faster() -> None:
     settings, arm = slowly(0.25)
     made = plan(way(MIDDLE), paper_scene(), settings)
     for seed in range(2):
-        assert difference_speeds(executed(made, settings, arm, seed), RATE, arm).max() <= 0.25 * EXACTLY
+        assert difference_speeds(executed(made, settings, arm, seed), RATE, arm).max() <= 0.25 * ROUNDING_FACTOR
 
 
 def test_every_setpoint_has_a_way_to_rest_that_is_not_faster() -> None:
@@ -81,7 +81,7 @@ def test_every_setpoint_has_a_way_to_rest_that_is_not_faster() -> None:
         sent.append(program.step().position)
         rest, _ = program.way_to_rest()
         if len(rest) and len(sent) % 3 == 0:
-            assert difference_speeds(np.vstack([sent[-1], rest[:, 0]]), RATE, arm).max() <= 0.25 * EXACTLY
+            assert difference_speeds(np.vstack([sent[-1], rest[:, 0]]), RATE, arm).max() <= 0.25 * ROUNDING_FACTOR
     assert len(sent) > 1000
 
 

@@ -22,7 +22,7 @@ from tests.unit.motion.ways import MIDDLE, clamped, learned, wandering, way
 ARM = Arm.of_variant()
 SETTINGS = MotionSettings()
 HOME = np.array(SETTINGS.home)
-OPEN = Scene("open")  # no table: the way to the floor is free
+OPEN_SCENE = Scene("open")  # no table: the way to the floor is free
 
 
 def dipping(height: float) -> np.ndarray:
@@ -44,23 +44,23 @@ def moves_clear(made: Plan, scene: Scene) -> float:
 def test_a_path_through_the_floor_is_refused_with_the_place_and_the_way_out(height: float) -> None:
     curve = clamped(dipping(height), degree=5)
     with pytest.raises(PathRefused, match=r"finger .* the floor.*s = .*move control point \d of 9 by .* up") as refused:
-        plan(learned(curve), OPEN)
-    found = assess(curve, OPEN)
+        plan(learned(curve), OPEN_SCENE)
+    found = assess(curve, OPEN_SCENE)
     assert refused.value.failure is not None
     assert (refused.value.failure.fault, found.failure and found.failure.fault) == ("collision", "collision")
-    lower = replace(OPEN, floor=-0.4)
+    lower = replace(OPEN_SCENE, floor=-0.4)
     assert judge(streamed(plan(learned(curve), lower)), curve, lower).clearance >= SETTINGS.clearance_min - 1e-3
 
 
 def test_doing_what_was_proposed_brings_the_path_off_the_floor() -> None:
     points = dipping(-0.05)
-    assert assess(clamped(points, degree=5), OPEN).failure is not None
+    assert assess(clamped(points, degree=5), OPEN_SCENE).failure is not None
     for _ in range(6):
-        found = assess(clamped(points, degree=5), OPEN)
+        found = assess(clamped(points, degree=5), OPEN_SCENE)
         if found.failure is None:
             break
         points[found.failure.suggestion.control_point] += found.failure.suggestion.move
-    made = plan(learned(clamped(points, degree=5)), OPEN)
+    made = plan(learned(clamped(points, degree=5)), OPEN_SCENE)
     assert made.certificate.clearance.value >= SETTINGS.clearance_min
 
 
@@ -108,7 +108,7 @@ def test_a_plan_holds_for_its_zones_and_no_others() -> None:
 @pytest.mark.parametrize(
     "scene",
     [
-        OPEN,
+        OPEN_SCENE,
         Scene("low", floor=0.3),
         Scene("cell", keep_in=(Shape("cell", "box", (2.0, 1.0, 1.4), (0.0, 0.0, 0.8)),)),
         Scene("person", keep_out=(Shape("person", "cylinder", (0.15, 2.0), (0.75, 0.15, 1.0)),)),

@@ -15,7 +15,7 @@ from teachpath.motion.timing.timed_trajectory import TimedTrajectory, time_joint
 from teachpath.motion.timing.timing import duration_lower_bound, time_tool_path
 from teachpath.motion.timing.velocity_profile import max_squared_rates, reach_times
 from teachpath.nurbs import Curve
-from tests.unit.motion.ways import FAR, MIDDLE, NEAR, clamped, hooked, wandering, way
+from tests.unit.motion.ways import FAR_X, MIDDLE, NEAR_X, clamped, hooked, wandering, way
 
 ARM = Arm.of_variant()
 
@@ -73,7 +73,7 @@ def test_a_kink_of_acceleration_and_the_reserve_cost_little() -> None:
     assert used < kept < 1.03 * used
 
 
-@pytest.mark.parametrize(("x", "ratio"), [(NEAR, 1.16), (MIDDLE, 1.26), (FAR, 1.28)])
+@pytest.mark.parametrize(("x", "ratio"), [(NEAR_X, 1.16), (MIDDLE, 1.26), (FAR_X, 1.28)])
 def test_the_ways_of_the_paper_take_little_longer_than_without_jerk_limit_and_reserve(x: float, ratio: float) -> None:
     track, bound = fastest(way(x, degree=5).curve)
     assert bound < track.duration < ratio * bound
@@ -94,7 +94,7 @@ def test_a_sharp_bend_slows_only_itself() -> None:
     assert track.duration < 0.2 * found.lengths[-1] / box
 
 
-@pytest.mark.parametrize("curve", [way(MIDDLE).curve, way(FAR, degree=5).curve, hooked()])
+@pytest.mark.parametrize("curve", [way(MIDDLE).curve, way(FAR_X, degree=5).curve, hooked()])
 def test_the_tool_stays_on_the_curve(curve: Curve) -> None:
     found, candidate = on_a_branch(curve)
     path, squared_rates = time_tool_path(found, candidate, ARM.limits.motion, rate=RATE)
