@@ -255,7 +255,7 @@ class Certificate:
     """The proof that the arm can follow a plan; uses are shares of the limits, at most 1.
 
     Attributes:
-        digest: SHA-256 over plan, certificate and arm, without the plan's id and the signature (hex).
+        digest: SHA-256 over plan, certificate and arm, without the plan's id, author and signature (hex).
         branch: of the arm on the whole path, in words, e.g. righty, elbow up.
         position_use: largest share of the joints' range.
         velocity_use: largest share of the joints' speed limits.
@@ -1009,6 +1009,7 @@ class MeasuredCalibration:
         rms: of their residuals [m].
         source: the tracker that was shown them.
         created_ns: when it was measured [ns since the Unix epoch]; 0: it is in the settings.
+        author: who measured it; empty: not said.
     """
 
     calibration: Calibration
@@ -1017,6 +1018,7 @@ class MeasuredCalibration:
     rms: float = 0.0
     source: str = ""
     created_ns: int = 0
+    author: str = ""
 
 
 @dataclass(frozen=True)
@@ -1134,6 +1136,7 @@ class Plan:
         posture: how near it keeps to the joints that were shown; None: no arm showed it, or they were not to
             count.
         output: of the arm that is on while the tool follows the path; None: none is.
+        author: who had it planned, where the station asks; empty: not said.
     """
 
     id: str
@@ -1151,6 +1154,7 @@ class Plan:
     tool_speed: float | None
     posture: Posture | None
     output: ToolOutput | None
+    author: str
 
 
 @dataclass(frozen=True)
@@ -1167,6 +1171,7 @@ class PlanSummary:
         clearance: least distance of arm and object to scene and self [m].
         revoked: whether its certificate was taken back.
         created_ns: when it was made [ns since the Unix epoch].
+        author: who had it planned, where the station asks; empty: not said.
     """
 
     id: str
@@ -1178,6 +1183,7 @@ class PlanSummary:
     clearance: float
     revoked: bool
     created_ns: int
+    author: str = ""
 
 
 @dataclass(frozen=True)

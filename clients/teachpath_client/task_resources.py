@@ -120,10 +120,11 @@ class TaskResources(Rest):
         source: str = "",
         fit_scale: bool = False,
         keep: bool = True,
+        author: str = "",
     ) -> MeasuredCalibration:
         """Fit a calibration to points, each as the tracker saw it and where it is [m, world], and keep it."""
         taught = [{"tracker": tracker, "world": world} for tracker, world in points]
-        body = {"points": taught, "source": source, "fit_scale": fit_scale, "keep": keep}
+        body = {"points": taught, "source": source, "fit_scale": fit_scale, "keep": keep, "author": author}
         return self._ask(MeasuredCalibration, "PUT", f"/calibrations/{name}", body)
 
     # tasks and their demonstrations

@@ -135,7 +135,7 @@ class JobKinds:
         path, version = str(job.request["path"]), job.request.get("version")
         learned = self.store.versions.get(path, version)[1] if isinstance(version, int) else self.store.path(path)
         scene = self.objects.scene_for(self.store.task(job.task).scene, learned)
-        signer = Signer(self.signing_key, self._calibrations_of(job.task, learned))
+        signer = Signer(self.signing_key, self._calibrations_of(job.task, learned), job.who)
         arm, free = self.settings.arm, job.request.get("posture") == "free"
         posture = None if free else find_posture(self.store, job.task, learned, arm)
         given = job.request.get("output")

@@ -197,6 +197,19 @@ def test_whoever_calls_himself_by_anothers_name_has_his_own_before_it(guarded: G
         body = {"base": 1, "curve": CURVE, "author": label, "branch": f"b{number}"}
         saved = guarded.desk.post(f"/paths/{path}/versions", body, headers=headers)
         assert saved.json()["author"] == author
+    job = guarded.desk.post(f"/paths/{path}/plans", headers=headers).json()
+    assert job["who"] == "teach"  # which its plan bears (test_command_line.py)
+    guarded.desk.post(f"/jobs/{job['id']}/cancel", headers=headers)
+
+
+def test_a_calibration_bears_the_authenticated_name(guarded: Guarded) -> None:
+    headers = guarded.headers(Capability.TEACH)
+    places = [{"tracker": place, "world": place} for place in ([0.4, 0, 0.5], [0.7, 0, 0.5], [0.7, 0.3, 0.5])]
+    body = {"points": places, "author": "administer"}
+    assert (
+        guarded.desk.send("PUT", "/api/v1/calibrations/named", json=body, headers=headers).json()["author"]
+        == "teach (administer)"
+    )
 
 
 def test_control_and_the_journal_have_the_name_of_the_token(guarded: Guarded) -> None:

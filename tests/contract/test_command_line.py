@@ -40,7 +40,11 @@ def station(desk: Desk, url: str) -> Iterator[Station]:
                 desk.import_(task, csv(120, step=step), scene="empty")
             run = station.learn(task)
             if task == TASK:
-                station.plan(run.learned.paths[0].id)
+                order = {"path": run.learned.paths[0].id, "version": 1}
+                job = desk.station.jobs.submit(
+                    task, "plan", order, "ada", who="ada"
+                )  # as a token of that name orders it
+                assert desk.job_ended(job.id)["state"] == "succeeded"
         yield station
 
 
@@ -80,6 +84,13 @@ def test_one_is_named_by_words_and_by_the_beginning_of_its_id(
     for beginning in (shown["id"], shown["id"][:-1] if kind == "plans" else shown["id"], shown["id"].partition("-")[2]):
         assert json.loads(said(url, kind, beginning, "--json"))["id"] == shown["id"]
     assert shown["id"] in said(url, *words) or kind == "runs"
+
+
+def test_a_plan_says_for_whom_it_was_made(station: Station, url: str) -> None:
+    (listed,) = station.plan_summaries(TASK)
+    assert listed.author == station.get_plan(listed.id).author == "ada"
+    assert "planned for ada" in said(url, "plans", listed.id)
+    assert re.search(r"\bada\b", said(url, "plans"))
 
 
 def test_files_that_were_written_are_told(station: Station, url: str, tmp_path: Path) -> None:

@@ -169,7 +169,7 @@ function content(path, plan, job, newer, readOnly) {
 }
 
 /** @param {Plan} plan */
-function planFacts({ duration, certificate, tool_speed: limit, posture, output }) {
+function planFacts({ duration, certificate, tool_speed: limit, posture, output, author }) {
   const { position_use, velocity_use, acceleration_use, jerk_use, torque_use } = certificate;
   const uses = [position_use, velocity_use, acceleration_use, jerk_use, torque_use];
   const toolSpeed = certificate.tool_speed;
@@ -191,5 +191,6 @@ function planFacts({ duration, certificate, tool_speed: limit, posture, output }
       "Farthest from what the arm showed",
       `${formatNumber((180 * posture.distance.value) / Math.PI, 1, "°")}, ${posture.distance.place}`,
     ],
+    ["Planned for", author],
   ]);
 }

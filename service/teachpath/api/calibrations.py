@@ -7,10 +7,11 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import Field, Strict
 
-from teachpath.api.access import TEACH, VIEW
+from teachpath.api.access import TEACH, VIEW, Sender, signed
 from teachpath.api.parts import Parts
 from teachpath.api.problems import refusals
 from teachpath.api.strict_requests import Body, named_in_body
+from teachpath.api.versions import LINE_PATTERN
 from teachpath.errors import NotFound
 from teachpath.records import Demonstration, MeasuredCalibration, TaughtPoint
 
@@ -32,6 +33,7 @@ class NewCalibration(Body):
     points: list[PointPair] = Field(max_length=MAX_POINTS, description="three or more, not on one line")
     source: str = Field("", max_length=200, description="tracker that was shown the points")
     fit_scale: bool = Field(False, description="find the scale too; else it is 1, as for trackers in metres")
+    author: str = Field("", max_length=80, pattern=LINE_PATTERN, description="who measures it")
     keep: bool = Field(True, description="false: only say what the calibration and its residuals would be")
 
 
@@ -60,7 +62,7 @@ def calibrations_router(parts: Parts) -> APIRouter:
         return found or [MeasuredCalibration(calibrations.get(name))]
 
     @router.put("/calibrations/{name}", responses=refusals(409, 507), dependencies=TEACH)
-    def measure_calibration(name: str, new: NewCalibration) -> MeasuredCalibration:
+    def measure_calibration(name: str, new: NewCalibration, sender: Sender) -> MeasuredCalibration:
         """Fit a calibration to taught points and keep it as the next version of its name.
 
         Demonstrations recorded before keep the version that they were recorded under.
@@ -71,6 +73,7 @@ def calibrations_router(parts: Parts) -> APIRouter:
             source=new.source,
             fit_scale=new.fit_scale,
             keep=new.keep,
+            author=signed(sender, new.author),
         )
 
     @router.post("/tasks/{task}/calibration", responses=refusals(409, 507), dependencies=TEACH)

@@ -120,7 +120,7 @@ def _show_path(station: Station, path: LearnedPath) -> None:
 def _plan_row(plan: PlanSummary) -> Sequence[object]:
     path, revoked = f"{plan.path} v{plan.path_version}", "revoked" if plan.revoked else ""
     clearance = describe_length(plan.clearance)
-    return plan.id, plan.task, path, f"{plan.duration:.2f} s", clearance, revoked, moment(plan.created_ns)
+    return plan.id, plan.task, path, f"{plan.duration:.2f} s", clearance, revoked, plan.author, moment(plan.created_ns)
 
 
 def _show_plan(station: Station, plan: Plan) -> None:
@@ -179,7 +179,7 @@ PATHS: Final = Listing(
     none="no paths yet: teachpath learn TASK",
 )
 PLANS: Final = Listing(
-    columns=("plan", "task", "path", "duration", "clearance", "", "made"),
+    columns=("plan", "task", "path", "duration", "clearance", "", "by", "made"),
     row=_plan_row,
     listed=lambda station, task, limit: station.plan_summaries(task, limit=limit),
     found=lambda station, words: station.get_plan(find_plan(station, words)),

@@ -111,7 +111,7 @@ def plan_lines(plan: Plan) -> str:
         f"  largest use of the limits: {', '.join(f'{name} {use.value:.0%}' for name, use in uses.items())}\n"
         f"{speed_line}"
         f"  least clearance {describe_length(c.clearance.value)} ({c.clearance.place})\n"
-        f"{_posture(plan.posture)}{_output(plan.output)}"
+        f"{_posture(plan.posture)}{_output(plan.output)}{_author(plan.author)}"
         f"  {_scope(c.signature)}"
     )
 
@@ -129,6 +129,10 @@ def _output(output: ToolOutput | None) -> str:
     return (
         f"  {output.name} is on along the path, and for {output.start:g} s before it and {output.end:g} s behind it\n"
     )
+
+
+def _author(author: str) -> str:
+    return f"  planned for {author}\n" if author else ""
 
 
 def _scope(signature: Signature | None) -> str:

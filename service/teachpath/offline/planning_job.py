@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from teachpath.io.store.recordings import Recordings
 from teachpath.io.store.store import Store
@@ -40,10 +40,17 @@ def find_posture(store: Store, task: str, path: LearnedPath, arm: Arm) -> Stored
 
 @dataclass(frozen=True)
 class Signer:
-    """What a plan is signed with as soon as it is certified."""
+    """What a plan is signed with as soon as it is certified.
+
+    Attributes:
+        key: of the station.
+        calibrations: of the demonstrations that the path was learned from.
+        author: who had it planned, as the station knows it; empty: it does not ask.
+    """
 
     key: SigningKey
     calibrations: CalibrationScope
+    author: str = ""
 
 
 PlanOrder = tuple[LearnedPath, Scene, MotionSettings, Arm, ShownPosture | None, ToolOutput | None]
@@ -75,4 +82,5 @@ def sign_planned(
 ) -> Plan:
     """Sign a plan that was made of these."""
     del path, scene, posture, output
-    return sign_plan(made, arm, settings, signer.key, issued_ns=time.time_ns(), calibrations=signer.calibrations)
+    ordered = replace(made, author=signer.author)
+    return sign_plan(ordered, arm, settings, signer.key, issued_ns=time.time_ns(), calibrations=signer.calibrations)

@@ -67,7 +67,14 @@ class Calibrations:
         return [MeasuredCalibration(calibration) for calibration in self.configured] + self.store.calibrations.newest()
 
     def measure(
-        self, name: str, points: Sequence[TaughtPoint], *, source: str = "", fit_scale: bool = False, keep: bool = True
+        self,
+        name: str,
+        points: Sequence[TaughtPoint],
+        *,
+        source: str = "",
+        fit_scale: bool = False,
+        keep: bool = True,
+        author: str = "",
     ) -> MeasuredCalibration:
         """Fit the calibration `name` to taught points and keep it as its next version.
 
@@ -77,6 +84,7 @@ class Calibrations:
             source: tracker that measured the points.
             fit_scale: see `fit_frame`.
             keep: store the calibration; if False, it is only returned.
+            author: who measures it.
 
         Raises:
             UnusableInput: a bad name, or points that fix no frame.
@@ -87,7 +95,7 @@ class Calibrations:
         if any(calibration.name == name for calibration in self.configured):
             raise Conflict(f"the calibration {name} is in the settings; choose another name, or take it out there")
         fitted = fit_frame(name, points, largest_residual=self.settings.largest_residual, fit_scale=fit_scale)
-        measured = replace(fitted, source=source)
+        measured = replace(fitted, source=source, author=author)
         return self.store.calibrations.add(measured) if keep else measured
 
     def require_current(self, demonstrations: Sequence[Demonstration], *, command: str = "learn") -> None:

@@ -50,6 +50,7 @@ class MeasuredCalibration:
         rms: of their residuals [m].
         source: the tracker that was shown them.
         created_ns: when it was measured [ns since the Unix epoch]; 0: it is in the settings.
+        author: who measured it; empty: not said.
     """
 
     calibration: Calibration
@@ -58,3 +59,4 @@ class MeasuredCalibration:
     rms: float = 0.0
     source: str = ""
     created_ns: int = 0
+    author: str = ""

@@ -215,6 +215,7 @@ class PlanSummary:
         clearance: least distance of arm and object to scene and self [m].
         revoked: whether its certificate was taken back.
         created_ns: when it was made [ns since the Unix epoch].
+        author: who had it planned, where the station asks; empty: not said.
     """
 
     id: str
@@ -226,3 +227,4 @@ class PlanSummary:
     clearance: float
     revoked: bool
     created_ns: int
+    author: str = ""

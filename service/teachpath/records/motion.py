@@ -175,7 +175,7 @@ class Certificate:
     """The proof that the arm can follow a plan; uses are shares of the limits, at most 1.
 
     Attributes:
-        digest: SHA-256 over plan, certificate and arm, without the plan's id and the signature (hex).
+        digest: SHA-256 over plan, certificate and arm, without the plan's id, author and signature (hex).
         branch: of the arm on the whole path, in words, e.g. righty, elbow up.
         position_use: largest share of the joints' range.
         velocity_use: largest share of the joints' speed limits.
@@ -276,6 +276,7 @@ class Plan:
         tool_speed: limit of elbow, wrist and tool centre point [m/s], at any override; None: no limit.
         posture: how near it keeps to the joints that were shown; None: no arm showed it, or they were not to count.
         output: of the arm that is on while the tool follows the path; None: none is.
+        author: who had it planned, where the station asks; empty: not said.
     """
 
     id: str
@@ -293,3 +294,4 @@ class Plan:
     tool_speed: float | None = None
     posture: Posture | None = field(default=None, metadata=LATER_FIELD)
     output: ToolOutput | None = field(default=None, metadata=LATER_FIELD)
+    author: str = field(default="", metadata=LATER_FIELD)

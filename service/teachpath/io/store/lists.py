@@ -121,6 +121,7 @@ class Lists:
             document["certificate"]["clearance"]["value"].as_float().label("clearance"),
             RevocationRow.plan.is_not(None).label("revoked"),
             PlanRow.created_ns,
+            func.coalesce(document["author"].as_string(), "").label("author"),
         )
         question: Select[Any] = (
             select(Bundle("plan", *columns))

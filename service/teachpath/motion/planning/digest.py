@@ -14,10 +14,11 @@ from teachpath.records import Plan
 def digest(plan: Plan, arm: Arm) -> str:
     """Compute the SHA-256 (hex) over all that decides the motion, what was measured on it, and the arm.
 
-    It notices changes, and anybody can compute it; who made a plan is told by its signature (`signature.py`).
+    It notices changes, and anybody can compute it; which station made a plan, and for whom, is told by its signature
+    (`signature.py`).
     """
     measured = replace(plan.certificate, digest="", signature=None)
-    return hashlib.sha256(canonical([replace(plan, id="", certificate=measured), arm])).hexdigest()
+    return hashlib.sha256(canonical([replace(plan, id="", author="", certificate=measured), arm])).hexdigest()
 
 
 def with_digest(plan: Plan, arm: Arm) -> Plan:

@@ -31,7 +31,14 @@ Place = tuple[str | int, ...]
 @pytest.fixture(scope="module")
 def plan(middle: Plan) -> Plan:
     """A signed plan of few numbers: all of them can be changed, one after the other."""
-    few = replace(middle, lengths=middle.lengths[:3], joints=middle.joints[:3], squared_rates=middle.squared_rates[:3])
+    rows = slice(3)
+    few = replace(
+        middle,
+        lengths=middle.lengths[rows],
+        joints=middle.joints[rows],
+        squared_rates=middle.squared_rates[rows],
+        author="ada",
+    )
     certified = replace(few, certificate=replace(few.certificate, digest=digest(few, ARM)))
     lab = Calibration("lab@1", scale=0.5, offset=(0.1, 0.2, 0.3))
     scope = CalibrationScope((lab,), (replace(lab, name="lab@2"),))
@@ -96,6 +103,12 @@ def test_every_single_change_of_a_signed_plan_is_refused(plan: Plan) -> None:
     assert {place[0] for place, _ in places} == set(json.loads(text))  # no field is left out
     accepted = [place for place, value in places if not is_refused(with_value(text, place, changed(value)))]
     assert accepted == []
+
+
+def test_for_whom_it_was_made_is_signed_and_changes_no_digest(plan: Plan) -> None:
+    others = replace(plan, author="bob")
+    assert digest(others, ARM) == plan.certificate.digest
+    assert "not one of this station's" in refusal(others)
 
 
 def test_whatever_people_call_its_scene_a_plan_is_the_same() -> None:
