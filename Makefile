@@ -2,6 +2,7 @@
 #   make demo [SPEED=4] [ARGS=--once]   the main job: tracker -> recorder -> learning -> arm
 #   make test    check and all tests          make bench [ARGS=scale]   measured figures; how costs grow
 #   make check   format, lint, types          make proto   regenerate the messages
+#   make figures [ARGS="--install --setup"]   the source in numbers; the installed size, how long the set-up takes
 #   make lint-contract   Spectral and Redocly over the description of the REST API, buf over the messages, twine over the package
 #   make probe-contract   whatever Schemathesis makes of the description, sent to a station as every role
 #   make generate-clients   clients by three public generators: none has an untyped answer, one teaches a station
@@ -28,11 +29,11 @@ READY   := .venv/.ready
 # Every file is checked against its hash, and nothing is installed that requirements/ does not name.
 PINNED  := --no-deps --require-hashes -r requirements
 
-.PHONY: demo serve test check check-page lint-contract probe-contract generate-clients bench experiments docs pins sbom proto clean setup programs
+.PHONY: demo serve test check check-page lint-contract probe-contract generate-clients bench figures experiments docs pins sbom proto clean setup programs
 .DEFAULT_GOAL := help
 
 help:
-	@sed -n '1,12s/^# \{0,1\}//p' Makefile
+	@sed -n '1,13s/^# \{0,1\}//p' Makefile
 
 # An environment with pip in it, from scratch where another interpreter's stands; Debian keeps the module that makes one
 # in a package of its own.
@@ -144,6 +145,9 @@ test: check programs
 
 bench: $(READY)
 	@$(BIN)/python -m tests.bench.run $(ARGS)
+
+figures: $(READY)
+	@$(BIN)/python -m tests.bench.figures $(ARGS)
 
 experiments: $(READY)
 	@$(BIN)/python -m tests.experiments.run $(ARGS)
