@@ -82,11 +82,13 @@ def plan_walk(tree: Path) -> tuple[int, int, int]:
 
 
 def installed_size(tree: Path) -> list[tuple[str, float]]:
-    """Install the service alone into a new environment; return the sizes of package and libraries [MiB]."""
+    """Install the service alone as `make setup` does, at its pinned versions; return what it takes on the disk [MiB]."""
     with tempfile.TemporaryDirectory() as folder:
         python = _new_environment(Path(folder) / "env")
         before = _size(Path(folder))
-        subprocess.run([python, "-m", "pip", "install", "-q", f"{tree}[service]"], check=True)
+        pins = ["--require-hashes", "-r", str(tree / "requirements" / "service.txt")]
+        for what in (pins, ["--no-build-isolation", str(tree)]):
+            subprocess.run([python, "-m", "pip", "install", "-qqq", "--no-deps", *what], check=True)
         package = sum(_size(found) for found in Path(folder).glob("env/lib/*/site-packages/teachpath*"))
         return [("its packages", package / MIB), ("with all libraries", (_size(Path(folder)) - before) / MIB)]
 
@@ -130,9 +132,7 @@ def main() -> None:
     print(f"page: {len(page)} modules, {sum(len(text.splitlines()) for text in page)} lines")
     report = [text for suffix in (".py", ".js") for text in sources(asked.tree, REPORT_FOLDERS, suffix)]
     print(f"report package: {sum(len(text.splitlines()) for text in report)} lines")
-    print(
-        f"walk of plan(): {entered} functions; modules come back to: {within} in planning, {everywhere} in all of motion"
-    )
+    print(f"walk of plan(): {entered} functions; modules come back to: {within} in planning, {everywhere} in motion")
     if asked.install:
         print("installed service: " + ", ".join(f"{what} {size:.1f} MiB" for what, size in installed_size(asked.tree)))
     if asked.setup:

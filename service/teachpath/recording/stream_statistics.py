@@ -16,17 +16,7 @@ MAX_SEQUENCE_JUMP = 100_000  # sequence numbers; a larger gap is a restarted dev
 MAX_LISTED_GAPS = 20
 RESTART_THRESHOLD = 10  # older numbers in a row, each with a newer time, that show that the device counts anew
 # refused payloads without a number explain as many lost numbers
-COUNTERS = (
-    "received",
-    "lost",
-    "reordered",
-    "late",
-    "duplicated",
-    "conflicts",
-    "refused",
-    "unnumbered",
-    "untracked",
-)
+COUNTERS = ("received", "lost", "reordered", "late", "duplicated", "conflicts", "refused", "unnumbered", "untracked")
 
 
 class StreamCounter:
