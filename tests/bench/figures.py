@@ -82,7 +82,7 @@ def plan_walk(tree: Path) -> tuple[int, int, int]:
 
 
 def installed_size(tree: Path) -> list[tuple[str, float]]:
-    """Install the service alone as `make setup` does, at its pinned versions; return what it takes on the disk [MiB]."""
+    """Install the service alone as `make setup` does, by its pins; return what it takes on the disk [MiB]."""
     with tempfile.TemporaryDirectory() as folder:
         python = _new_environment(Path(folder) / "env")
         before = _size(Path(folder))
