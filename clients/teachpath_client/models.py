@@ -558,6 +558,10 @@ class ExecutorStatus:
         ending: whether it is over as soon as the arm rests, because it was stopped or given up.
         unasked_motion: that the arm moves although nothing is under way, in words; nothing starts before
             somebody acknowledges it.
+        hand: the tracker whose live hand is followed; empty: a plan is.
+        hand_scene: the scene in which it is followed.
+        hindrance: what keeps the tool from where the hand is, in words; empty: nothing.
+        awaits_clutch: whether the arm rests until the clutch is pressed, and nothing else keeps it.
     """
 
     execution: str = ""
@@ -584,6 +588,10 @@ class ExecutorStatus:
     hand_latency_p99_us: float = 0.0
     ending: bool = False
     unasked_motion: str = ""
+    hand: str = ""
+    hand_scene: str = ""
+    hindrance: str = ""
+    awaits_clutch: bool = False
 
 
 @dataclass(frozen=True)

@@ -192,7 +192,7 @@ class JournalEntry(_message.Message):
     def __init__(self, at_ns: _Optional[int] = ..., who: _Optional[str] = ..., verb: _Optional[str] = ..., execution: _Optional[str] = ..., answer: _Optional[str] = ...) -> None: ...
 
 class ExecutorStatus(_message.Message):
-    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "activity", "operator", "asking", "hand_latency_p50_us", "hand_latency_p99_us", "scheduling", "ending", "unasked_motion")
+    __slots__ = ("execution", "state", "reason", "progress", "override", "cycles", "late", "missed", "lateness_p50_us", "lateness_p99_us", "lateness_max_us", "limit_use", "tracking_error", "limit_place", "duration", "length", "activity", "operator", "asking", "hand_latency_p50_us", "hand_latency_p99_us", "scheduling", "ending", "unasked_motion", "hand", "hand_scene", "hindrance", "awaits_clutch")
     EXECUTION_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
     REASON_FIELD_NUMBER: _ClassVar[int]
@@ -217,6 +217,10 @@ class ExecutorStatus(_message.Message):
     SCHEDULING_FIELD_NUMBER: _ClassVar[int]
     ENDING_FIELD_NUMBER: _ClassVar[int]
     UNASKED_MOTION_FIELD_NUMBER: _ClassVar[int]
+    HAND_FIELD_NUMBER: _ClassVar[int]
+    HAND_SCENE_FIELD_NUMBER: _ClassVar[int]
+    HINDRANCE_FIELD_NUMBER: _ClassVar[int]
+    AWAITS_CLUTCH_FIELD_NUMBER: _ClassVar[int]
     execution: str
     state: str
     reason: str
@@ -241,4 +245,8 @@ class ExecutorStatus(_message.Message):
     scheduling: str
     ending: bool
     unasked_motion: str
-    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., activity: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., hand_latency_p50_us: _Optional[float] = ..., hand_latency_p99_us: _Optional[float] = ..., scheduling: _Optional[str] = ..., ending: _Optional[bool] = ..., unasked_motion: _Optional[str] = ...) -> None: ...
+    hand: str
+    hand_scene: str
+    hindrance: str
+    awaits_clutch: bool
+    def __init__(self, execution: _Optional[str] = ..., state: _Optional[str] = ..., reason: _Optional[str] = ..., progress: _Optional[float] = ..., override: _Optional[float] = ..., cycles: _Optional[int] = ..., late: _Optional[int] = ..., missed: _Optional[int] = ..., lateness_p50_us: _Optional[float] = ..., lateness_p99_us: _Optional[float] = ..., lateness_max_us: _Optional[float] = ..., limit_use: _Optional[float] = ..., tracking_error: _Optional[float] = ..., limit_place: _Optional[str] = ..., duration: _Optional[float] = ..., length: _Optional[float] = ..., activity: _Optional[str] = ..., operator: _Optional[str] = ..., asking: _Optional[str] = ..., hand_latency_p50_us: _Optional[float] = ..., hand_latency_p99_us: _Optional[float] = ..., scheduling: _Optional[str] = ..., ending: _Optional[bool] = ..., unasked_motion: _Optional[str] = ..., hand: _Optional[str] = ..., hand_scene: _Optional[str] = ..., hindrance: _Optional[str] = ..., awaits_clutch: _Optional[bool] = ...) -> None: ...

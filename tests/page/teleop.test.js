@@ -3,12 +3,13 @@ import { test } from "node:test";
 import { teleopText } from "../../clients/web/panels/teleop_parts.js";
 
 const session = { usesPageHand: true, usesHeadset: false };
-const status = (changes) => ({ state: "held", reason: "", activity: "mirroring glove in scene paper", ...changes });
+const followed = { hand: "glove", hand_scene: "paper", hindrance: "", awaits_clutch: false };
+const status = (changes) => ({ state: "held", reason: "", ...followed, ...changes });
 
 test("what hinders an arm that follows a hand is said while it follows", () => {
   const slow = "finger is near to table, so every step is checked first and the tool is slow";
   assert.equal(
-    teleopText(status({ state: "following", activity: `mirroring glove in scene paper: ${slow}` }), session),
+    teleopText(status({ state: "following", hindrance: slow }), session),
     "The arm follows in scene paper. Finger is near to table, so every step is checked first and the tool is slow.",
   );
   assert.equal(teleopText(status({ state: "following" }), session), "The arm follows in scene paper.");
@@ -19,7 +20,7 @@ test("an arm that is held says why, and how it is led while it only waits for th
     teleopText(status({ reason: "the hand was lost; the arm goes on by itself if that ends within 1 s" }), session),
     "The arm is held: the hand was lost; the arm goes on by itself if that ends within 1 s.",
   );
-  const waits = status({ reason: "press the clutch (button bit 2) to move the arm" });
+  const waits = status({ reason: "press the clutch (button bit 2) to move the arm", awaits_clutch: true });
   assert.match(teleopText(waits, session), /^The arm is held in scene paper\. Press on the ball/);
   assert.match(
     teleopText(waits, { ...session, usesPageHand: false }),

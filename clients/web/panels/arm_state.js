@@ -15,7 +15,7 @@ export const STATE_LABELS = {
 };
 
 /** @param {ExecutorStatus} status */
-export const isTeleoperated = ({ activity }) => activity.startsWith("mirroring");
+export const isTeleoperated = ({ hand }) => Boolean(hand);
 
 /**
  * @param {ExecutorStatus | undefined} status of the execution that runs, else of the last one

@@ -16,7 +16,6 @@ const HELP = [
 ];
 const TELEOP_HELP =
   "Move the arm by hand, without a path: it follows while the clutch is held, and rests when it is let go.";
-const WAITING_FOR_CLUTCH = "press the clutch"; // the executor's reason begins so while it waits
 
 /**
  * What gives way near joint limits and singular poses, by orientation.
@@ -88,13 +87,13 @@ export function refill(select, names) {
  * @param {ExecutorStatus} status
  * @param {import("../hand/teleop_session.js").TeleopSession} session
  */
-export function teleopText({ state, reason, activity }, { usesPageHand, usesHeadset }) {
-  const hindrance = activity.split(": ").slice(1).join(": ");
-  const scene = /^mirroring \S+( in scene [^:]+)/.exec(activity)?.[1] ?? "";
-  if (state === "following") return `The arm follows${scene}.${hindrance && ` ${capitalize(hindrance)}.`}`;
-  if (state === "stopping") return "Let go: the arm comes to rest.";
-  if (hindrance) return `The arm is held. ${capitalize(hindrance)}.`;
-  if (!reason.startsWith(WAITING_FOR_CLUTCH)) return `The arm is held: ${reason}.`;
+export function teleopText(status, { usesPageHand, usesHeadset }) {
+  const hindrance = status.hindrance && capitalize(status.hindrance);
+  const scene = status.hand_scene && ` in scene ${status.hand_scene}`;
+  if (status.state === "following") return `The arm follows${scene}.${hindrance && ` ${hindrance}.`}`;
+  if (status.state === "stopping") return "Let go: the arm comes to rest.";
+  if (hindrance) return `The arm is held. ${hindrance}.`;
+  if (!status.awaits_clutch) return `The arm is held: ${status.reason}.`;
   const held = `The arm is held${scene}.`;
   if (usesHeadset) return `${held} Close the left hand, and it follows the right one.`;
   return usesPageHand

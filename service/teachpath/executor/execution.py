@@ -12,7 +12,7 @@ from teachpath.executor.pacing import NominalClock, Pacer
 from teachpath.executor.rest_points import RestPoints
 from teachpath.executor.tracking_meter import TrackingMeter
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.execution.motion_program import MotionProgram
+from teachpath.motion.execution.motion_program import FollowedHand, MotionProgram
 from teachpath.motion.execution.segments import Detour
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto.control import ExecutorState
@@ -251,6 +251,7 @@ class Execution:
         """Return the status, with the statistics of the loop that runs the execution."""
         late = pacer.lateness()
         latency_p50, latency_p99 = self.program.latency
+        hand = self.program.followed_hand or FollowedHand()
         return ExecutorStatus(
             execution=self.id,
             state=self.state,
@@ -272,6 +273,10 @@ class Execution:
             hand_latency_p50_us=latency_p50,
             hand_latency_p99_us=latency_p99,
             ending=self.is_ending,
+            hand=hand.tracker,
+            hand_scene=hand.scene,
+            hindrance=hand.hindrance,
+            awaits_clutch=hand.awaits_clutch,
         )
 
     def _move_on(self) -> None:

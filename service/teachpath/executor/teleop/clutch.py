@@ -57,6 +57,11 @@ class Clutch:
         return False
 
     @property
+    def awaits_press(self) -> bool:
+        """Whether the arm does not follow for the one reason that the button is not pressed."""
+        return not self.engaged and self.reason == PRESS_HINT
+
+    @property
     def is_paused(self) -> bool:
         """Whether the arm goes on without another press when what was lost is back."""
         return self._pause is not None

@@ -15,6 +15,7 @@ from teachpath.executor.teleop.gripper import GripperFollower, observed_load
 from teachpath.executor.teleop.hand_input import HandInput
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.collision_model import CollisionModel, Load
+from teachpath.motion.execution.motion_program import FollowedHand
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
 from teachpath.motion.execution.teleop_follower import TeleopFollower
 from teachpath.motion.settings import MotionSettings
@@ -118,16 +119,23 @@ class TeleopProgram:
     @property
     def activity(self) -> str:
         """What the arm does, and why the tool is not where the hand is."""
-        following = f"mirroring {self._request.tracker} in scene {self._request.scene}"
+        hand = self.followed_hand
+        following = f"following {hand.tracker} in scene {hand.scene}"
+        return f"{following}: {hand.hindrance}" if hand.hindrance else following
+
+    @property
+    def followed_hand(self) -> FollowedHand:
+        """The hand that is followed, and what keeps the tool from it."""
         intrusion = self._hand.intrusion(self._clock())
         hindrances = (self._follower.reason, intrusion, self._turn_hint) if self._clutch.engaged else (intrusion,)
-        hindrance = "; ".join(filter(None, hindrances))
-        return f"{following}: {hindrance}" if hindrance else following
+        return FollowedHand(
+            self._request.tracker, self._request.scene, "; ".join(filter(None, hindrances)), self._clutch.awaits_press
+        )
 
     @property
     def location(self) -> str:
         """Where the execution is, in words."""
-        return f"while mirroring {self._request.tracker}"
+        return f"while following {self._request.tracker}"
 
     @property
     def latency(self) -> tuple[float, float]:

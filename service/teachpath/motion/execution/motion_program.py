@@ -2,10 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedHand:
+    """A live hand that the arm follows.
+
+    Attributes:
+        tracker: whose hand it is; empty: there is none.
+        scene: in which it is followed.
+        hindrance: what keeps the tool from where the hand is, in words; empty: nothing.
+        awaits_clutch: whether the arm rests until the clutch is pressed, and nothing else keeps it.
+    """
+
+    tracker: str = ""
+    scene: str = ""
+    hindrance: str = ""
+    awaits_clutch: bool = False
 
 
 class MotionProgram(Protocol):
@@ -58,6 +76,10 @@ class MotionProgram(Protocol):
     @property
     def activity(self) -> str:
         """What the arm does, in words."""
+
+    @property
+    def followed_hand(self) -> FollowedHand | None:
+        """The live hand that the program follows; None: it follows a plan."""
 
     @property
     def location(self) -> str:

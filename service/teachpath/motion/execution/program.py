@@ -9,14 +9,13 @@ import numpy as np
 
 from teachpath.errors import Conflict
 from teachpath.motion.arm.model import Arm
-from teachpath.motion.arm.puma560 import Array
 from teachpath.motion.execution.governor import MIN_OVERRIDE, Governor, WayToRest
 from teachpath.motion.execution.segments import Detour, MotionState, RestPoint, Segment, plan_return_path, plan_segments
 from teachpath.motion.planning.digest import verify
 from teachpath.motion.settings import MotionSettings
 from teachpath.motion.timing.jog import node_length, time_at_length
 from teachpath.motion.timing.timed_trajectory import TimedTrajectory
-from teachpath.records import Plan
+from teachpath.records import Array, Plan
 
 
 class PlanProgram:
@@ -42,6 +41,7 @@ class PlanProgram:
     """
 
     latency: tuple[float, float] = (0.0, 0.0)  # a plan answers no hand
+    followed_hand: None = None
 
     def __init__(
         self,

@@ -11,7 +11,7 @@ from teachpath.motion.arm.model import Arm
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.records import Calibration, JointState, TeleopRequest
 from tests.unit.executor.executors import within_limits
-from tests.unit.executor.teleop.test_program import CLUTCH, Held
+from tests.unit.executor.teleop.hand_bench import CLUTCH, Held
 from tests.unit.recording.hands import CLOSED_HAND, OPEN_HAND, sample
 
 ARM = Arm.of_variant()
