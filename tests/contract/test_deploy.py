@@ -71,6 +71,12 @@ def test_the_container_runs_as_nobody_in_particular_and_installs_by_hash() -> No
             assert (ROOT / line.split()[1]).exists()
 
 
+def test_each_sample_says_how_it_was_checked() -> None:
+    rows = (DEPLOY / "README.md").read_text()
+    files = {each.name for each in DEPLOY.iterdir()} - {"README.md"}
+    assert [name for name in sorted(files) if not re.search(rf"^\|.*`{re.escape(name)}/?`", rows, re.MULTILINE)] == []
+
+
 def test_caddy_takes_its_sample(tmp_path: Path) -> None:
     program = shutil.which("caddy")
     if program is None:
