@@ -13,6 +13,37 @@ from teachpath.api.examples import add_examples
 from teachpath.api.problems import MEANINGS, PROBLEM, Refusal
 from teachpath.api.schemas import REFERENCE, Schema, describe, records_in
 
+DESCRIPTION: Final = """Show a task a few times; teachpath finds the different ways it was done, learns a path for
+each, proves that the arm can follow it, and moves the arm.
+
+**From files to a motion.** `PUT /tasks/{task}` with `{"scene": "empty"}` (`paper` unless said; of a task that an
+import makes `empty`); `POST /tasks/{task}/demonstrations` with each file as the body, then `POST /tasks/{task}/jobs`
+with `{"kind": "learn"}`: each answers with a job. What learning has made is the run that the job's `outcome` names
+(`GET /tasks/{task}/runs/{run}`, paths in `learned.paths`). `POST /paths/{path}/plans` makes a job, too, whose outcome
+is a plan or `failure`, why there is none. `POST /executions` with `{"plan": ID}` moves the arm;
+`GET /executions/{execution}` says how far it is: `status.state` is `ended` or `faulted` at last, with `reason`.
+`POST /stop` stops the arm, and needs no token.
+
+**Units.** Metres, radians, seconds; quaternions w, x, y, z; times ending in `_ns` are nanoseconds since the Unix
+epoch. These have more digits than JavaScript's numbers: read them as BigInt (`JSON.parse` with a reviver whose third
+argument has `source`, as in clients/examples/07_teach_from_typescript.ts).
+
+**What is not there** is `null`; of a text it is the empty text, of a time in `_ns` it is 0. A field that is left out
+of a request has its default.
+
+**Jobs** are answered with 202 and their address in `Location`. Ask until `finished_ns` is not 0, or hear the topic
+`jobs` of the WebSocket `/api/v1/events` (`/asyncapi.json`). An order with `Idempotency-Key` may be sent again where no
+answer came: it begins nothing, and is answered with its job; with another order the key is refused (409).
+
+**Lists** come in pages of at most `limit` entries; the header `Link` has the address of the next one (`rel="next"`).
+
+**Refusals** are `application/problem+json`: `detail` is a sentence for people, `error` a word for programs. 404 is of
+the address, 422 of the body or a parameter; a field or parameter that is not known is refused with the nearest known
+name, and nothing is done. 429 has `Retry-After` in seconds. `HEAD` is answered wherever `GET` is.
+
+**Who sends** is said by `Authorization: Bearer TOKEN` where the station asks (`GET /identity`). `Teachpath-Operator`
+is a name beside that, for the journal; `Teachpath-Lease` the token of who has taken control (`POST /lease`), needed
+only while somebody has. Programs send no `Origin`: it is how browsers tell pages of others."""
 TAGS: Final = {
     "tasks": "What is demonstrated, its demonstrations, and files that become some.",
     "recording": "Demonstrations that are being shown to a tracker now.",

@@ -20,7 +20,7 @@ from teachpath.api.compressed_documents import CompressedDocuments
 from teachpath.api.control import control_router
 from teachpath.api.curves import curves_router
 from teachpath.api.demonstrations import demonstrations_router
-from teachpath.api.description import DescribedApi
+from teachpath.api.description import DESCRIPTION, DescribedApi
 from teachpath.api.executions import executions_router, stops_router
 from teachpath.api.exports import exports_router
 from teachpath.api.faults import answer_errors
@@ -54,10 +54,6 @@ from teachpath.web.server import possible_connections
 
 PREFIX: Final = "/api/v1"
 UNSPECIFIED_HOSTS: Final = {"0.0.0.0", "::", ""}  # where to listen, and no name of a station
-
-DESCRIPTION = """Show a task a few times; teachpath finds the different ways it was done, learns a path for each, proves
-that the arm can follow it, and moves the arm. Metres, radians, seconds; quaternions w, x, y, z; times ending in `_ns`
-are nanoseconds since the Unix epoch. Every refusal has a sentence in `detail`."""
 
 
 def build_api(parts: Parts, *pages: APIRouter) -> FastAPI:
