@@ -81,6 +81,17 @@ def test_a_sample_in_json_has_the_fields_of_the_message() -> None:
         assert {field.name for field in fields(kind)} == set(message.DESCRIPTOR.fields_by_name)
 
 
+def test_a_sample_in_json_may_say_its_time_as_text(port: int) -> None:
+    sample = {"sequence": 1, "position": {"x": 0.5, "y": 0.0, "z": 0.5}, "tracked": True}
+    with connect(f"ws://127.0.0.1:{port}/api/v1/trackers/page-of-text/samples") as socket:
+        for stamp in ("1796106334268000001", "1796106334288000001n", "-1", "9" * 40, ""):
+            socket.send(json.dumps({"sample": sample | {"device_ns": stamp}}))
+        refusals = [json.loads(socket.recv(timeout=HANG))["refused"] for _ in range(4)]
+        assert all("no HandSample" in sentence for sentence in refusals)
+        socket.send(json.dumps({"ping": 1}))
+        assert json.loads(socket.recv(timeout=HANG))["samples"] == {"passed": 1, "refused": 4}
+
+
 def test_answers_to_a_tracker_are_as_described(port: int) -> None:
     with connect(f"ws://127.0.0.1:{port}/api/v1/trackers/page-described/samples") as socket:
         for order, kind in (({"ping": 1.5}, live_messages.PongMessage), ({"end": 3}, live_messages.RefusedMessage)):

@@ -56,7 +56,8 @@ def encode_sample(sample: Sample) -> bytes:
 def sample_payload(content: bytes | Mapping[str, Any]) -> bytes:
     """Return the message of a hand sample that came as protobuf, or as a JSON object with the names of its fields.
 
-    The values are not checked yet; `decode_sample` does that.
+    The values are not checked yet; `decode_sample` does that. In JSON `device_ns` may be text, for languages whose
+    numbers have fewer digits.
 
     Raises:
         UnusableSample: it is no `HandSample`, or too large.
@@ -64,10 +65,17 @@ def sample_payload(content: bytes | Mapping[str, Any]) -> bytes:
     if isinstance(content, bytes):
         return _parse(content).SerializeToString()
     try:
-        return tracker_pb2.HandSample(**content).SerializeToString()
+        return tracker_pb2.HandSample(**_with_number(content)).SerializeToString()
     except (TypeError, ValueError, AttributeError) as error:
         shown = json.dumps(content)[:120]
         raise UnusableSample(f"{shown} is no HandSample: {' '.join(str(error).split())}") from None
+
+
+def _with_number(content: Mapping[str, Any]) -> Mapping[str, Any]:
+    stamp = content.get("device_ns")
+    if isinstance(stamp, str) and stamp.isascii() and stamp.isdecimal():
+        return {**content, "device_ns": int(stamp)}
+    return content
 
 
 def _parse(payload: bytes) -> tracker_pb2.HandSample:
