@@ -152,18 +152,12 @@ class Station:
         self.objects: ObjectPoses = ObjectPoses(
             self.bus, self.keys, scene, self.executions.is_moving, lambda scene: self._shown.show_scene()
         )
-        self.recorder: Recorder = Recorder(
-            self.bus,
-            self.keys,
-            self.store,
-            settings.recording,
-            Lookup(scene, self.calibrations.get, self.objects.reported),
-            DemonstrationCallbacks(
-                added=lambda demonstration, trajectory: self._shown.show(demonstration.task),
-                changed=lambda demonstration: self._shown.show(demonstration.task),
-            ),
-            call=call,
+        lookup = Lookup(scene, self.calibrations.get, self.objects.reported)
+        callbacks = DemonstrationCallbacks(
+            added=lambda demonstration, trajectory: self._shown.show(demonstration.task),
+            changed=lambda demonstration: self._shown.show(demonstration.task),
         )
+        self.recorder: Recorder = Recorder(self.bus, self.keys, store, settings.recording, lookup, callbacks, call=call)
         self._queries = RecorderQueries(self.bus, self.keys, self.recorder)
         self.guidance: GuidanceThread = GuidanceThread(store.demonstrations, self._course, settings.learning, call)
         self.websocket_trackers: WebSocketTrackers = WebSocketTrackers(self.bus, self.keys, self.recorder)
@@ -256,8 +250,7 @@ class Station:
         notes += self.store.spool.faults() + (self._access.notes(datetime.now(UTC)) if self._access else [])
         notes += self.access.notes() + self.audit.notes() + self.scenes.notes
         notes += self.certificate.notes(datetime.now(UTC)) if self.certificate else []
-        if left := self.store.recordings.cut_off(self.recorder.is_writing):
-            notes.append(f"{len(left)} recordings were cut off; stop the service and run: teachpath doctor")
+        notes += self.store.recordings.notes(self.recorder.is_writing)
         return notes + abandoned_notes(Path(self.settings.store.data_dir))
 
     def _polls(self) -> dict[str, Poll]:

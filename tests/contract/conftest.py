@@ -6,6 +6,7 @@ import pytest
 from tests.contract import stations
 from tests.contract.desk import Desk
 from tests.contract.stations import web_port
+from tests.contract.stores import open_, store, url  # noqa: F401
 from tests.postgres import Server
 
 # What a station answers must not depend on its database; elsewhere, tests ask a station with SQLite alone.
@@ -16,6 +17,7 @@ ON_BOTH = {
         "pages",
         "rest",
         "rest_calibrations",
+        "rest_control",
         "rest_scenes",
         "rest_task_changes",
         "rest_tasks",

@@ -1,61 +1,24 @@
 """Every role on the bus, every key, every verb: what the table grants goes through, and nothing else."""
 
-import json
 import queue
-import stat
 import threading
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 import zenoh
 
-from teachpath.errors import Unreachable, UnusableSettings
+from teachpath.errors import Unreachable
 from teachpath.io.bus import Bus, BusSettings, listen_on_bus, open_bus
 from teachpath.io.bus_access import BusAccess, granted
-from teachpath.io.bus_logins import local_login, new_password, prepare_access
+from teachpath.io.bus_logins import new_password
 from teachpath_client import Link
 from teachpath_proto.keys import Keys
-from teachpath_proto.logins import Login, Role, find_login, logins_path, read_logins, write_logins
+from teachpath_proto.logins import Login, Role
+from tests.contract.bus_table import DENIAL_WAIT, KEYS, MEMBERS, PREFIX, ROWS, STOP, VERBS, answered, asked, drain, raw
 from tests.ports import free_endpoint
 from tests.waiting import HANG, wait_until
-
-PREFIX = "teachpath/station"
-MEMBERS = (Role.EXECUTOR, Role.ROBOT, Role.TRACKER, Role.OPERATOR, Role.VIEWER)
-# Who may put (p), hear (h), serve (s) and ask (a) on which key; nobody deletes.
-TABLE = """
-key                      executor  robot  tracker  operator  viewer
-executor/command         s         -      -        a         -
-executor/stop            hs        pa     pa       pa        pa
-executor/lease           s         -      -        a         -
-executor/status          p         h      -        h         h
-executor/journal         p         -      -        h         h
-robot/puma560/setpoint   p         h      -        h         h
-robot/puma560/state      h         p      -        h         h
-robot/puma560/reset      a         s      -        -         -
-trackers/glove/samples   h         -      p        h         h
-trackers/glove/feedback  -         -      h        h         h
-recorder/start           -         -      a        a         -
-recorder/stop            -         -      a        a         -
-recorder/pause           -         -      a        a         -
-recorder/resume          -         -      a        a         -
-recorder/discard         -         -      a        a         -
-recorder/restore         -         -      a        a         -
-recorder/amend           -         -      a        a         -
-recorder/status          -         -      a        a         a
-jobs/job-1               -         -      -        h         h
-station/certificate      a         -      -        -         -
-station/scene            a         -      -        -         -
-scenes/paper/object      -         -      p        p         -
-elsewhere                -         -      -        -         -
-"""
-VERBS = {"p": "put", "h": "subscribe", "s": "serve", "a": "ask"}
-ROWS = [line.split() for line in TABLE.strip().splitlines()]
-KEYS = [f"{PREFIX}/{key}" for key, *_ in ROWS[1:]]
-STOP = f"{PREFIX}/executor/stop"
-DENIAL_WAIT = 1.0  # [s] until a question that nobody lets through is given up
 
 
 @pytest.fixture(scope="module")
@@ -297,13 +260,6 @@ def test_a_driver_that_is_held_to_its_arm_takes_part_in_everything_that_an_arm_d
     executor.close()
 
 
-def answered(bus: Bus, key: str) -> bool:
-    try:
-        return bus.ask(key, timeout=DENIAL_WAIT) == b"done"
-    except Unreachable:
-        return False
-
-
 @pytest.mark.parametrize("login", [None, Login("viewer", "guessed", Role.VIEWER), Login("root", "", Role.EXECUTOR)])
 def test_without_the_right_password_nobody_comes_in(
     station: tuple[BusSettings, BusAccess, Bus], login: Login | None
@@ -311,67 +267,3 @@ def test_without_the_right_password_nobody_comes_in(
     settings = BusSettings(endpoint=station[0].endpoint, connect_timeout=0.5)
     with pytest.raises(Unreachable, match="is the login one of its own"):
         open_bus(settings, login)
-
-
-def test_local_logins_are_made_once_and_only_their_owner_reads_them() -> None:
-    endpoint = free_endpoint()
-    first, again = prepare_access(BusSettings(endpoint)), prepare_access(BusSettings(endpoint))
-    assert first is not None
-    assert again is not None
-    path = logins_path(endpoint)
-    assert stat.S_IMODE(path.stat().st_mode) == 0o600
-    local = {login.user: login.password for login in read_logins(path)}
-    assert set(local) == {"robot", "tracker", "operator", "viewer"}
-    assert find_login(endpoint, Role.EXECUTOR) is None
-    assert first.logins[1:] == again.logins[1:]
-    assert first.login(Role.EXECUTOR).password != again.login(Role.EXECUTOR).password
-    assert find_login(endpoint, Role.TRACKER) == first.login(Role.TRACKER)
-
-
-def test_a_broken_file_of_logins_is_named(tmp_path: Path) -> None:
-    path = tmp_path / "logins.json"
-    write_logins(path, [Login("a", "b", Role.VIEWER)])
-    path.write_text(path.read_text().replace("viewer", "king"))
-    with pytest.raises(ValueError, match=f"{path} holds no logins"):
-        read_logins(path)
-
-
-def test_a_station_with_a_broken_file_of_logins_refuses_with_a_sentence() -> None:
-    endpoint = free_endpoint()
-    path = logins_path(endpoint)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("[]")
-    for read in (lambda: prepare_access(BusSettings(endpoint)), lambda: local_login(BusSettings(endpoint), Role.ROBOT)):
-        with pytest.raises(UnusableSettings, match=f"{path} holds no logins .* remove it and start the service again"):
-            read()
-
-
-def drain(heard: queue.Queue[tuple[str, bytes]]) -> list[tuple[str, bytes]]:
-    """Return what has come, after a moment for it to come."""
-    try:
-        came = [heard.get(timeout=0.05)]
-    except queue.Empty:
-        return []
-    while not heard.empty():
-        came.append(heard.get())
-    return came
-
-
-def asked(bus: Bus, key: str, timeout: float = DENIAL_WAIT) -> bool:
-    try:
-        return bool(bus.ask(key, timeout=timeout))
-    except Unreachable:
-        return False
-
-
-def raw(settings: BusSettings, login: Login) -> Any:
-    """Open a session that may try what our own bus never would."""
-    config = zenoh.Config()
-    for path, value in {
-        "mode": "client",
-        "connect/endpoints": [settings.endpoint],
-        "scouting/multicast/enabled": False,
-        "transport/auth/usrpwd": {"user": login.user, "password": login.password},
-    }.items():
-        config.insert_json5(path, json.dumps(value))
-    return zenoh.open(config)

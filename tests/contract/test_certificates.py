@@ -287,15 +287,3 @@ def test_an_authority_signs_nothing_that_would_outlive_it(tmp_path: Path) -> Non
     assert certificates.expiry(late) <= end
     with pytest.raises(UnusableSettings, match=r"ends on .* move the folder away, then make all certificates anew"):
         certificates.issue(tmp_path, who, end - timedelta(days=20))
-
-
-@pytest.mark.parametrize(
-    ("settings", "sentence"),
-    [
-        (BusSettings(mode="client"), "a router knows programs by their certificates"),
-        (BusSettings("tls/127.0.0.1:1", access_control=False), "certificates say who may do what; set it to true"),
-    ],
-)
-def test_settings_that_contradict_each_other_are_refused(settings: BusSettings, sentence: str) -> None:
-    with pytest.raises(UnusableSettings, match=sentence):
-        prepare_access(settings)

@@ -11,7 +11,7 @@ from typing import Any, get_args
 from pydantic import TypeAdapter
 from websockets.sync.client import connect
 
-from teachpath.api import live_messages
+from teachpath.api import live_messages, sample_messages
 from teachpath.api.live_description import live_description
 from teachpath.io.store.tables import Base
 from teachpath.live.event_hub import PRIVATE_TOPICS, EventHub
@@ -75,8 +75,8 @@ def test_states_are_as_described(desk: Desk) -> None:
 
 
 def test_a_sample_in_json_has_the_fields_of_the_message() -> None:
-    kinds = {live_messages.SampleFields: tracker_pb2.HandSample, live_messages.SamplePosition: tracker_pb2.Vector3}
-    kinds |= {live_messages.SampleOrientation: tracker_pb2.Quaternion}
+    kinds = {sample_messages.SampleFields: tracker_pb2.HandSample, sample_messages.SamplePosition: tracker_pb2.Vector3}
+    kinds |= {sample_messages.SampleOrientation: tracker_pb2.Quaternion}
     for kind, message in kinds.items():
         assert {field.name for field in fields(kind)} == set(message.DESCRIPTOR.fields_by_name)
 
@@ -94,7 +94,7 @@ def test_a_sample_in_json_may_say_its_time_as_text(port: int) -> None:
 
 def test_answers_to_a_tracker_are_as_described(port: int) -> None:
     with connect(f"ws://127.0.0.1:{port}/api/v1/trackers/page-described/samples") as socket:
-        for order, kind in (({"ping": 1.5}, live_messages.PongMessage), ({"end": 3}, live_messages.RefusedMessage)):
+        for order, kind in (({"ping": 1.5}, sample_messages.PongMessage), ({"end": 3}, sample_messages.RefusedMessage)):
             socket.send(json.dumps(order))
             TypeAdapter(kind).validate_python(json.loads(socket.recv(timeout=HANG)), extra="forbid")
 

@@ -1,8 +1,6 @@
 """Several services on one database: a job is done once, whoever dies; names are of one station; changes reach all."""
 
 import queue
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -14,16 +12,16 @@ import sqlalchemy as sa
 
 from teachpath.errors import Conflict, UnusableInput, UnusableSettings
 from teachpath.io.store.changes import ALL_TOPICS
-from teachpath.io.store.pages import PageRequest
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.job_service import JobService
 from teachpath.motion.collision.builtin_scenes import paper_scene
-from teachpath.records import ExecutorStatus, JobState, RunSummary
+from teachpath.records import ExecutorStatus, JobState
 from teachpath.robot.scenes import Scenes
 from teachpath_proto.control import ExecutorState
 from tests.contract.job_program import job_service
 from tests.contract.rows import a_job, demonstration, learned
+from tests.contract.service_program import a_program, every_run
 from tests.contract.stations import settings
 from tests.postgres import Server
 from tests.waiting import HANG, wait_until
@@ -246,17 +244,6 @@ def test_after_a_lost_line_everything_is_read_again(open_: Open, postgres: Serve
 # services that do jobs
 
 
-@contextmanager
-def a_program(url: str, folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    command = [sys.executable, "-m", "tests.contract.job_program", url, str(folder)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        try:
-            assert process.stdout is not None
-            yield process, process.stdout.readline().strip()
-        finally:
-            process.kill()
-
-
 def test_of_two_services_one_is_killed_and_every_job_is_done_once(open_: Open, url: str, tmp_path: Path) -> None:
     hearer, seen = open_(), queue.Queue[float]()
     hearer.feed.start(lambda table, key: seen.put(hearer.job(key).fraction) if table == "jobs" else None)
@@ -298,7 +285,3 @@ def test_a_worker_needs_a_shared_database_and_the_recordings(url: str, tmp_path:
     recording.touch()
     with JobService(chosen):
         pass
-
-
-def every_run(store: Store) -> list[RunSummary]:
-    return store.lists.runs("t", PageRequest(limit=500)).entries

@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 Answer = tuple[Any, Any]  # a route of the browser, and what the service answered to it
 

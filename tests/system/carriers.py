@@ -7,7 +7,7 @@ import numpy as np
 
 from teachpath_client.models import Demonstration
 from tests.system.processes import Service
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 START, GOAL = (0.58, -0.28, 0.52), (0.58, 0.28, 0.52)  # of the box in the paper's scene
 CARRY_HEIGHT = 0.62  # [m] height at which it is carried between the obstacles

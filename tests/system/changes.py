@@ -4,7 +4,7 @@ import pytest
 
 from tests.system.gizmos import pull_handle
 from tests.system.processes import Service
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 
 def tab(visit: Visit, name: str) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from teachpath.nurbs import Curve
 from tests.system.gizmos import pull_handle
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 U = np.linspace(0, 1, 301)
 

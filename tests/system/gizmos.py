@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 
 def pull_handle(visit: Visit, gizmo: str, handle: str, along: tuple[float, float, float]) -> None:

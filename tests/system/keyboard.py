@@ -3,7 +3,7 @@
 from typing import Any
 
 from tests.system.operators import Operator
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 MAX_TABS = 90  # from anywhere to anything: more is a trap
 # What has the focus, in the words of a screen reader or of whoever looks at it; the page as a whole has none.

@@ -14,7 +14,7 @@ from teachpath_client.models import Execution
 from teachpath_proto.control import ExecutorState
 from teachpath_proto.keys import Keys
 from tests.system.carriers import NEXT_SCRIPT, START, move_hand
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 from tests.waiting import wait_until
 
 RESTING_STATES = frozenset(state for state in ExecutorState if state.is_resting)

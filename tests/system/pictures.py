@@ -13,7 +13,7 @@ from PIL import Image
 from tests.conftest import NAMES, NO_CHROMIUM, chromium
 from tests.system.processes import Service
 from tests.system.test_station import record
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 DOCS = Path(__file__).parents[2] / "docs"
 SIZE = (1200, 750)  # of the page

@@ -6,7 +6,7 @@ from typing import Any
 
 from tests.system.carriers import ARRIVED_SCRIPT, START, carry, phase, until_box
 from tests.system.operators import RESTING_STATES, Operator
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 LOOK_COUNT = 60  # for the click of a tap, before it is tapped again
 HEAR_SCRIPT = "one => { one.heard = false; one.addEventListener('click', () => (one.heard = true), {once: true}); }"

@@ -11,7 +11,7 @@ from teachpath.motion.arm.geometry import visual_solids
 from teachpath.motion.arm.kinematics import link_frames
 from teachpath.motion.arm.model import Arm
 from teachpath.motion.settings import MotionSettings
-from tests.system.test_view import Server, Visit, way
+from tests.system.visits import Server, Visit, way
 
 pytestmark = pytest.mark.system
 

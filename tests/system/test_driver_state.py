@@ -15,7 +15,7 @@ from teachpath_client.errors import ClientError
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
 from tests.system.processes import Service, run
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system

@@ -10,7 +10,7 @@ import pytest
 from tests.contract.desk import csv
 from tests.system.access import barriers
 from tests.system.processes import Service
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 from tests.unit.offline.test_file_report import dwelling, table, two_markers, two_motions
 
 pytestmark = pytest.mark.system

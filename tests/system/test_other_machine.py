@@ -23,7 +23,7 @@ from tests.conftest import chromium, find_chromium
 from tests.system.carriers import HEADSET, carry_worn, move_hand, phase
 from tests.system.operators import Leader
 from tests.system.processes import BUSY_SETTINGS, Command
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system

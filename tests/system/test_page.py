@@ -23,7 +23,7 @@ from tests.system.packages import Package
 from tests.system.processes import Service, run
 from tests.system.stop_places import WIDTHS, stop_faults
 from tests.system.test_station import record
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 from tests.waiting import HANG
 
 pytestmark = pytest.mark.system

@@ -16,7 +16,7 @@ from tests.system.access import barriers
 from tests.system.operators import Leader, Shown
 from tests.system.processes import Service
 from tests.system.test_station import FAST_RATE, SAMPLE_COUNT, shown
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.system

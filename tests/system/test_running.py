@@ -14,7 +14,7 @@ from tests.system.access import barriers
 from tests.system.carriers import HEADSET, begin, carry, carry_worn, move_hand, phase
 from tests.system.operators import RESTING_STATES, Leader, Operator, Status, named_joints
 from tests.system.processes import Service, stop_arm
-from tests.system.test_view import REST, Visit
+from tests.system.visits import REST, Visit
 from tests.waiting import wait_until
 
 ARM = Arm.of_variant()

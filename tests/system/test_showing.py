@@ -26,7 +26,7 @@ from tests.system.carriers import (
 from tests.system.operators import Operator
 from tests.system.processes import Service
 from tests.system.stories import Fingers, Mouse, tell
-from tests.system.test_view import Visit
+from tests.system.visits import Visit
 
 LOW_HEIGHT = START[2] + 0.05  # [m]
 SIZE = (900, 420)  # which leaves the machine to the sampling

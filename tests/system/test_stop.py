@@ -27,7 +27,7 @@ from tests.system.access import barriers
 from tests.system.processes import Service, run, stop_arm
 from tests.system.stop_places import stop_faults
 from tests.system.test_lateness import executor, ready_plan
-from tests.system.test_view import KEYS, Server, Visit
+from tests.system.visits import KEYS, Server, Visit
 from tests.waiting import HANG, wait_until
 
 pytestmark = pytest.mark.system

@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import Any, Final
 
 from teachpath import __version__
-from teachpath.api.live_messages import (
-    STATES,
-    ChangeEvent,
+from teachpath.api.live_messages import STATES, ChangeEvent, JointMessage, ResyncEvent
+from teachpath.api.sample_messages import (
     EndMessage,
-    JointMessage,
     PingMessage,
     PongMessage,
     RefusedMessage,
     ReportMessage,
-    ResyncEvent,
     SampleMessage,
 )
 from teachpath.api.schemas import REFERENCE, Schema, schemas_of

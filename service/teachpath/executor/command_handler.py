@@ -117,9 +117,8 @@ class CommandHandler:
 
     def write_journal(self, who: str, verb: JournalVerb, answer: str, *, execution: str | None = None) -> None:
         """Publish an entry of the journal, and never wait: who did what to an execution, and the answer."""
-        if execution is None:
-            execution = self.current.id if self.current else ""
-        entry = JournalEntry(self._time.wall_ns(), who, verb, execution, answer)
+        current = self.current.id if self.current else ""
+        entry = JournalEntry(self._time.wall_ns(), who, verb, current if execution is None else execution, answer)
         self._bus.publish(self._keys.executor_journal, wire.encode_entry(entry), delivery=Delivery.DROPS_LAST)
 
     def answer(self, payload: bytes) -> bytes:

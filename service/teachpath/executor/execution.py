@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Final
 
 from teachpath.executor.arm_rest import ArmRest
 from teachpath.executor.grasp_monitor import GraspMonitor
+from teachpath.executor.late_arm import LATE_ARM_SUFFIX, is_too_late
 from teachpath.executor.limit_meter import LimitMeter
 from teachpath.executor.pacing import NominalClock, Pacer
 from teachpath.executor.rest_points import RestPoints
@@ -17,9 +19,6 @@ from teachpath.motion.execution.segments import Detour
 from teachpath.records import Array, ExecutorStatus, JointState, Setpoint
 from teachpath_proto.control import ExecutorState
 
-LATE_ARM_SUFFIX: Final = ", waiting for the arm, which is late"
-MAX_ARM_LAG: Final = 0.3  # [s] by which an arm may play its setpoints late; a driver's delay and the bus take less
-CAUGHT_UP_LAG: Final = 0.25  # [s] below which an arm that was late has caught up
 STANDSTILL_SETPOINTS: Final = 3  # sent at rest before an arm moves: one may be lost
 RESTART_TIMEOUT_NS: Final = 500_000_000  # [ns] within which an arm takes up setpoints that begin where it rests
 SETTLING_TIME: Final = 0.3  # [s] after which an arm that is held has come to rest
@@ -133,11 +132,10 @@ class Execution:
 
     def wait_for_late_arm(self, arm: JointState) -> None:
         """Come to rest while the arm is late, because a stop would queue behind the setpoints it has yet to play."""
-        waiting = self.untaken(arm)
-        if not self.program.waiting:
-            self.program.set_waiting(min(waiting, self._moving_setpoints) > MAX_ARM_LAG * self._rate)
-        elif waiting < CAUGHT_UP_LAG * self._rate or self.arm_has_stopped(arm):
-            self.program.set_waiting(False)
+        waits, untaken = self.program.waiting, self.untaken(arm)
+        is_late = is_too_late(untaken, self._moving_setpoints, self._rate, waits=waits)
+        if not (waits and is_late) or self.arm_has_stopped(arm):
+            self.program.set_waiting(is_late and not waits)
 
     def restart(self, cycle: int, due: int) -> bool:
         """Go on from where the arm rests that has followed the way to rest of a setpoint; tell whether that is known.
@@ -160,8 +158,7 @@ class Execution:
 
     def has_restarted(self, cycle: int, due: int) -> bool:
         """Tell whether it went on from the rest of that setpoint just now, so that the arm may not know yet."""
-        before, at = self._restarted
-        return before == cycle and due - at < RESTART_TIMEOUT_NS
+        return self._restarted[0] == cycle and due - self._restarted[1] < RESTART_TIMEOUT_NS
 
     def hold(self, reason: str) -> None:
         """Come to rest on the path and stay there, unless the execution is over or being ended."""
@@ -251,7 +248,6 @@ class Execution:
         """Return the status, with the statistics of the loop that runs the execution."""
         late = pacer.lateness()
         latency_p50, latency_p99 = self.program.latency
-        hand = self.program.followed_hand or FollowedHand()
         return ExecutorStatus(
             execution=self.id,
             state=self.state,
@@ -273,10 +269,7 @@ class Execution:
             hand_latency_p50_us=latency_p50,
             hand_latency_p99_us=latency_p99,
             ending=self.is_ending,
-            hand=hand.tracker,
-            hand_scene=hand.scene,
-            hindrance=hand.hindrance,
-            awaits_clutch=hand.awaits_clutch,
+            **asdict(self.program.followed_hand or FollowedHand()),
         )
 
     def _move_on(self) -> None:

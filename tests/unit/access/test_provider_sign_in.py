@@ -6,9 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qsl, urlsplit
 
-import httpx
 import pytest
 from joserfc import jwt
 from joserfc.jwk import OctKey
@@ -17,46 +15,13 @@ from teachpath.access.access import Access
 from teachpath.access.attempts import MAX_FROM_ADDRESS
 from teachpath.access.memory_people import MemoryPeople
 from teachpath.access.memory_tokens import MemoryTokens
-from teachpath.access.provider_sign_in import LIFE, Answer, open_provider
+from teachpath.access.provider_sign_in import LIFE, open_provider
 from teachpath.access.settings import AuthSettings, OidcSettings
 from teachpath.errors import Conflict, NotAllowed, NotSignedIn, TooManyAttempts, Unreachable, UnusableSettings
 from teachpath.io.identity_provider import KEY_SET_LIFETIME
-from teachpath.records import Capability, Person, Subject
+from teachpath.records import Capability, Person
 from tests.identity_provider import CLIENT, SECRET, EmulatedProvider, new_key, running
-
-NS = 10**9
-PAGE = "https://robot.example/"
-CLIENT_ADDRESS = "127.0.0.1"
-NOW_NS = 10**9  # [s]
-
-
-class Lab:
-    """A station whose people sign in at a provider, and its clock."""
-
-    def __init__(self, provider: EmulatedProvider, settings: OidcSettings) -> None:
-        self.now, self.provider, self.people = float(NOW_NS), provider, MemoryPeople()
-        provider.now = lambda: self.now
-        self.access = Access(
-            AuthSettings("oidc", session_idle=600.0),
-            MemoryTokens(),
-            self.people,
-            lambda: round(self.now * NS),
-            settings,
-            open_provider("oidc", settings, lambda: self.now),
-        )
-        assert self.access.provider
-        self.sign_ins = self.access.provider
-
-    def visited(self) -> tuple[Answer, str]:
-        """Begin, let the browser go to the provider, and return what it comes back with, and its secret."""
-        address, secret = self.sign_ins.begin(PAGE, CLIENT_ADDRESS)
-        with httpx.Client(verify=False) as browser:
-            place = browser.get(address).headers["location"]
-        found = dict(parse_qsl(urlsplit(place).query))
-        return Answer(found["code"], found["state"], found.get("iss", "")), secret
-
-    def sign_in(self) -> tuple[str, Subject]:
-        return self.sign_ins.finish(*self.visited())
+from tests.unit.access.provider_lab import CLIENT_ADDRESS, NOW_NS, NS, PAGE, Lab
 
 
 @pytest.fixture(scope="module")

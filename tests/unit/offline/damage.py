@@ -8,6 +8,7 @@ from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from teachpath.io.documents import to_document
 from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.offline.doctor import examine
@@ -16,6 +17,7 @@ from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.session import RecordingSession
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Scene, Shape
+from tests.contract import rows
 from tests.unit.recording.hands import demonstration
 
 SCENE = Scene("paper", (), Shape("block", "box", (0.04, 0.04, 0.04), (0.5, 0.0, 0.48)))
@@ -94,3 +96,13 @@ def contradictions(data: Path) -> list[str]:
         if [row.number for row in rows] != list(range(1, len(rows) + 1)):
             found.append("numbers are not 1 to n")
         return found + [f"left: {part.name}" for part in store.recordings.unfinished()]
+
+
+def change_row(data: Path, key: str, row: Demonstration) -> None:
+    with opened(data) as store:
+        document = to_document(row)
+        store.change_demonstration(key, **{name: getattr(row, name) for name in document})
+
+
+def make_row(key: str) -> Demonstration:
+    return rows.demonstration(key, task=TASK, recording=f"{TASK}/{key}.mcap")

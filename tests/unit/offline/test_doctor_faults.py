@@ -13,7 +13,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teachpath.errors import UnusableRecording
-from teachpath.io.documents import to_document
 from teachpath.io.store.integrity import find_contradiction
 from teachpath.io.store.recording_facts import amended, read_facts
 from teachpath.io.store.recordings import Recordings
@@ -23,41 +22,18 @@ from teachpath.offline.findings import ExitCode, FaultKind, exit_code
 from teachpath.offline.learning_job import StoredDemonstrations
 from teachpath.offline.leftovers import note_unnamed
 from teachpath.offline.recording_checks import inspect
-from teachpath.records import Calibration, Demonstration
+from teachpath.records import Calibration
 from tests.unit.offline.damage import (
-    TASK,
+    change_row,
     contradictions,
     examined,
     file_of,
     flip,
-    make_station,
+    make_row,
     opened,
     rows_of,
 )
 from tests.unit.recording.hands import demonstration
-
-
-@pytest.fixture(scope="module")
-def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    data = tmp_path_factory.mktemp("station") / "data"
-    make_station(data, torn=100)
-    return data
-
-
-@pytest.fixture
-def data(template: Path, tmp_path: Path) -> Path:
-    """A station with three whole demonstrations and nothing else."""
-    folder = tmp_path / "data"
-    shutil.copytree(template, folder)
-    for part in folder.rglob("*.part"):
-        part.unlink()
-    return folder
-
-
-def change_row(data: Path, key: str, row: Demonstration) -> None:
-    with opened(data) as store:
-        document = to_document(row)
-        store.change_demonstration(key, **{name: getattr(row, name) for name in document})
 
 
 def test_a_row_and_its_file_say_the_same(data: Path) -> None:
@@ -207,12 +183,6 @@ def test_a_row_that_says_nothing_is_told_and_the_others_are_examined(data: Path)
     kinds = [finding.kind for finding in examined(data)]
     assert FaultKind.UNREADABLE in kinds
     assert FaultKind.MISSING in kinds
-
-
-def make_row(key: str) -> Demonstration:
-    from tests.contract.rows import demonstration as row
-
-    return row(key, task=TASK, recording=f"{TASK}/{key}.mcap")
 
 
 def test_rows_of_before_digests_get_them(data: Path) -> None:

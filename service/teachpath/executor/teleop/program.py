@@ -120,7 +120,7 @@ class TeleopProgram:
     def activity(self) -> str:
         """What the arm does, and why the tool is not where the hand is."""
         hand = self.followed_hand
-        following = f"following {hand.tracker} in scene {hand.scene}"
+        following = f"following {hand.hand} in scene {hand.hand_scene}"
         return f"{following}: {hand.hindrance}" if hand.hindrance else following
 
     @property

@@ -251,3 +251,8 @@ class Recordings:
         found = self.unfinished()
         # What was being written when it was found has its final name, or is gone, once nothing is written any more.
         return [file for file in found if file.exists()] if found and not is_writing() else []
+
+    def notes(self, is_writing: Callable[[], bool]) -> list[str]:
+        """Say what an operator should know of recordings that were cut off."""
+        left = self.cut_off(is_writing)
+        return [f"{len(left)} recordings were cut off; stop the service and run: teachpath doctor"] if left else []

@@ -11,17 +11,17 @@ from teachpath.motion.execution.segments import Detour, MotionState, RestPoint
 
 @dataclass(frozen=True, slots=True)
 class FollowedHand:
-    """A live hand that the arm follows.
+    """A live hand that the arm follows, as `ExecutorStatus` has it.
 
     Attributes:
-        tracker: whose hand it is; empty: there is none.
-        scene: in which it is followed.
+        hand: its tracker; empty: there is none.
+        hand_scene: the scene in which it is followed.
         hindrance: what keeps the tool from where the hand is, in words; empty: nothing.
         awaits_clutch: whether the arm rests until the clutch is pressed, and nothing else keeps it.
     """
 
-    tracker: str = ""
-    scene: str = ""
+    hand: str = ""
+    hand_scene: str = ""
     hindrance: str = ""
     awaits_clutch: bool = False
 
