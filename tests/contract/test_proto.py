@@ -1,11 +1,16 @@
 """The generated messages are those of the .proto files, which say what every field of theirs is."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+from teachpath.records import JobState, Phase, Verdict
+from teachpath.records.recording import FistCommand, RecordingState
+from teachpath.records.work import JobKindName
+from teachpath_proto.control import ExecutorState
 from tests.contract import messages
 
 DECLARATION = re.compile(r"^(?:(message|enum) (\w+) \{|((?:optional |repeated )?[\w.]+ )?(\w+) = (\d+);)$")
@@ -39,6 +44,28 @@ def unsaid(text: str) -> Iterator[str]:
 @pytest.mark.parametrize("file", messages.FILES, ids=lambda file: str(file.name))
 def test_every_field_says_what_it_is_and_in_which_unit(file: Path) -> None:
     assert list(unsaid(file.read_text())) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "field", "words"),
+    [
+        ("job", "JobProgress.kind", get_args(JobKindName)),
+        ("job", "JobProgress.state", JobState),
+        ("motion", "ExecutorStatus.state", set(ExecutorState) - {ExecutorState.STARTING}),  # which the service says
+        ("tracker", "RecordingReport.phase", Phase),
+        ("tracker", "RecordingReport.state", RecordingState),
+        ("tracker", "RecordingReport.pending_command", FistCommand),
+        ("tracker", "DemonstrationReport.verdict", Verdict),
+    ],
+)
+def test_the_words_of_a_field_are_those_of_the_program(file: str, field: str, words: Iterable[str]) -> None:
+    message, _, name = field.partition(".")
+    text = (messages.PACKAGE / messages.SOURCES / f"{file}.proto").read_text()
+    body = text.partition(f"message {message} {{")[2].partition("\n}")[0]
+    comment = re.search(rf"// (.*)\n *string {name} =", body)
+    assert comment is not None
+    said = re.findall("[a-z]+", comment[1].partition(";")[0].rpartition(":")[2])
+    assert set(said) - {"or", "nothing"} == set(words)
 
 
 def test_what_a_proto_file_leaves_unsaid_is_found() -> None:

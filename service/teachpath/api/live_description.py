@@ -34,6 +34,11 @@ JOINTS: Final = """What the arm does, at most 25 times a second while something 
 Back-pressure: a client that reads slowly gets the newest state and none of those between. Nothing may be sent here."""
 SAMPLES: Final = """Samples of a hand from a page or a program that does not speak Zenoh; `name` is the tracker's.
 
+Connect, begin a recording of the name (`POST /api/v1/tasks/{task}/recording` with `{"tracker": NAME}`), and send one
+sample after the other, numbered from any number on; `end` with the last number gives the `report`. A message that
+cannot be used is answered with `refused`, and what it held is lost: listen. The rules of samples, and when a grasp
+counts, are in proto/README.md; clients/examples/08_track_from_typescript.ts is such a program.
+
 Binary messages are `HandSample` in protobuf (teachpath/v1/tracker.proto), text messages are JSON. The name
 belongs to this connection: another one under it is refused with code 1008, unless it shows the same `session`. A
 connection that sends nothing for 10 s, not even a ping, is closed. `end` waits until all samples have been recorded."""

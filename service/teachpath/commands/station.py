@@ -37,6 +37,7 @@ def serve(
     """Run the service until Ctrl-C.
 
     It records what trackers show, works on jobs, moves the simulated arm, and serves the page and the REST API.
+    The port of the bus is a setting: bus.endpoint, or TEACHPATH_BUS__ENDPOINT=tcp/127.0.0.1:PORT.
     """
     from teachpath.commands.serving import serving, until_signalled
 
