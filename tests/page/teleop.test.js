@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { teleopText } from "../../clients/web/panels/teleop_parts.js";
+import { teleopText } from "../../clients/web/panels/teleop_elements.js";
 
 const session = { usesPageHand: true, usesHeadset: false };
 const followed = { hand: "glove", hand_scene: "paper", hindrance: "", awaits_clutch: false };

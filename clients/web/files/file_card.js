@@ -1,7 +1,7 @@
 // One file before it is imported: what was understood, its motion with the marks, what would be made, and corrections.
 import { element, option } from "../elements.js";
 import { numberInput } from "../number_input.js";
-import { verdictExplanation } from "../panels/demonstration_parts.js";
+import { verdictExplanation } from "../panels/demonstration_elements.js";
 import { capitalize, formatNumber, pluralize } from "../texts.js";
 import { isMarked } from "./file_import.js";
 import { motionPlot } from "./motion_plot.js";

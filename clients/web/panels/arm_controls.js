@@ -23,7 +23,7 @@ const TITLES = {
 export function armControls(place, context) {
   const panel = new ArmControls(place, context);
   return {
-    driver: panel.parts.driver, // where stands what the arm itself says
+    driver: panel.elements.driver, // where stands what the arm itself says
     /** @type {Section["update"]} */
     update: (state, changed) => panel.update(state, changed),
     show: () => panel.show(),
@@ -43,9 +43,9 @@ class ArmControls {
   /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
     this.context = context;
-    this.parts = createParts();
-    place.append(...this.parts.all);
-    const { start, commands, owner, speed, acknowledge } = this.parts;
+    this.elements = createElements();
+    place.append(...this.elements.all);
+    const { start, commands, owner, speed, acknowledge } = this.elements;
     lease.onChange = () => this.#pollLease();
     commands.addEventListener("click", (event) => this.#sendCommand(closestData(event).verb ?? ""));
     owner.addEventListener("click", (event) => this.#changeLease(closestData(event).word ?? ""));
@@ -98,9 +98,9 @@ class ArmControls {
 
   /** @param {Plan} plan */
   #start(plan) {
-    const { context, parts } = this;
+    const { context, elements } = this;
     context.attempt(async () => {
-      await post("executions", { plan: plan.id, override: Number(parts.speed.value) / 100 }, lease.headers);
+      await post("executions", { plan: plan.id, override: Number(elements.speed.value) / 100 }, lease.headers);
       await context.eventStream.read("executions");
     });
   }
@@ -118,7 +118,7 @@ class ArmControls {
 
   /** While the slider moves the newest speed is sent, one request at a time. */
   async #sendOverride() {
-    const { speed, share } = this.parts;
+    const { speed, share } = this.elements;
     share.textContent = formatPercent(Number(speed.value) / 100);
     this.#isOverrideNewer = true;
     if (this.#isSending) return;
@@ -137,7 +137,7 @@ class ArmControls {
 
   /** Show the speed at which the arm goes, but for one that it has just been told. @param {ExecutorStatus | null} active */
   #showOverride(active) {
-    const { speed, share } = this.parts;
+    const { speed, share } = this.elements;
     if (!active || Math.abs(active.override - (this.#sentOverride ?? active.override)) < 0.005)
       this.#sentOverride = null;
     if (!active || this.#isSending || this.#sentOverride !== null || speed.matches(":active")) return;
@@ -146,34 +146,34 @@ class ArmControls {
   }
 
   #operatorName() {
-    const name = this.parts.name.value.trim() || "this page";
+    const name = this.elements.name.value.trim() || "this page";
     localStorage.setItem("operator", name);
     return name;
   }
 
   /** @param {State} state */
   #render(state) {
-    const { parts } = this;
+    const { elements } = this;
     const active = activeExecution(state);
     const last = state.executor?.execution ? state.executor : state.executions?.[0]?.status;
     const isAway = state.connection === "lost";
     const status = active ?? last;
-    patchChildren(parts.state, armState(status, isAway));
-    patchChildren(parts.figures, !isAway && status && armFigures(status, active !== null));
+    patchChildren(elements.state, armState(status, isAway));
+    patchChildren(elements.figures, !isAway && status && armFigures(status, active !== null));
     const isOthers = Boolean(state.lease?.holder) && !lease.held;
     const unasked = (!isAway && state.executor?.unasked_motion) || "";
-    parts.driver.hidden = isAway;
-    parts.unasked.hidden = unasked === "";
-    parts.unaskedText.textContent = unasked && `${capitalize(unasked)}.`;
+    elements.driver.hidden = isAway;
+    elements.unasked.hidden = unasked === "";
+    elements.unaskedText.textContent = unasked && `${capitalize(unasked)}.`;
     const why = startBlocker(state, active, isOthers);
-    block(parts.start, why);
-    parts.why.textContent = isAway || active ? "" : why || HOW_TO_START;
-    parts.why.hidden = parts.why.textContent === "";
-    for (const button of parts.commands.querySelectorAll("button"))
+    block(elements.start, why);
+    elements.why.textContent = isAway || active ? "" : why || HOW_TO_START;
+    elements.why.hidden = elements.why.textContent === "";
+    for (const button of elements.commands.querySelectorAll("button"))
       block(button, orderBlocker(button.dataset.verb, active), TITLES[button.dataset.verb ?? ""]);
     this.#showOverride(active);
-    patchChildren(parts.owner, isAway ? "Who holds control is not known." : leaseOwner(state.lease));
-    parts.nameField.hidden = lease.token !== "";
+    patchChildren(elements.owner, isAway ? "Who holds control is not known." : leaseOwner(state.lease));
+    elements.nameField.hidden = lease.token !== "";
   }
 }
 
@@ -225,7 +225,7 @@ function leaseOwner(state) {
   return ["Nobody holds control; every page may give orders. ", order("take", "Take control")];
 }
 
-function createParts() {
+function createElements() {
   const unasked = unaskedParts();
   /** @param {string} verb @param {string} drawing @param {string} text */
   const order = (verb, drawing, text) =>

@@ -8,7 +8,7 @@ import { XrHand, xrUnavailableReason } from "../hand/xr_hand.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny } from "../store.js";
 import { formatNumber, pluralize } from "../texts.js";
-import { createParts, demonstrationRow, senderFacts, sessionText } from "./demonstration_parts.js";
+import { createElements, demonstrationRow, senderFacts, sessionText } from "./demonstration_elements.js";
 import { countFresh, learn, learnButton } from "./learning.js";
 
 const PAGE_HIDDEN_SENTENCE = "The page was hidden, so recording has stopped; what was carried is lost.";
@@ -38,9 +38,9 @@ class DemonstrationPanel {
   /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
     this.context = context;
-    this.parts = createParts();
-    place.append(...this.parts.all);
-    const { start, headset, next, finish, discard, undo } = this.parts;
+    this.elements = createElements();
+    place.append(...this.elements.all);
+    const { start, headset, next, finish, discard, undo } = this.elements;
     start.addEventListener("click", () => this.#begin());
     headset.addEventListener("click", () => this.#begin({ withHeadset: true }));
     next.addEventListener("click", (event) => {
@@ -69,8 +69,8 @@ class DemonstrationPanel {
     const isKnown = state.runs?.length === 0 || state.selectedRun; // what was learned so far
     const count = isKnown ? countFresh(state) : 0;
     const words = `${count} ${pluralize(count, "demonstration")}`;
-    patchChildren(this.parts.next, count > 0 && learnButton(state, `Learn the ways of ${words}`));
-    this.parts.start.classList.toggle("primary", count === 0);
+    patchChildren(this.elements.next, count > 0 && learnButton(state, `Learn the ways of ${words}`));
+    this.elements.start.classList.toggle("primary", count === 0);
   }
 
   async #learn() {
@@ -86,7 +86,7 @@ class DemonstrationPanel {
   async #begin({ withHeadset = false } = {}) {
     if (this.session || this.#isBeginning) return;
     this.#isBeginning = true;
-    const { context, parts } = this;
+    const { context, elements } = this;
     // The headset's session first: it must come from the click itself.
     const isReady = !withHeadset || (await context.attempt(() => this.#startHeadset()));
     const session = isReady ? await context.attempt(() => this.#record(withHeadset ? 0 : SAMPLE_RATE)) : null;
@@ -97,10 +97,10 @@ class DemonstrationPanel {
     }
     this.#hideServiceObject(true);
     this.#render();
-    parts.finish.focus();
+    elements.finish.focus();
     const isCurrent = () => this.session === session;
-    for (let left = Number(parts.seconds.value); left > 0 && isCurrent(); left--) {
-      parts.statusText.textContent = `Get ready: ${left}`;
+    for (let left = Number(elements.seconds.value); left > 0 && isCurrent(); left--) {
+      elements.statusText.textContent = `Get ready: ${left}`;
       await new Promise((resolve) => setTimeout(resolve, 1000));
     }
     if (!isCurrent()) return;
@@ -133,7 +133,7 @@ class DemonstrationPanel {
   async #taskAndScene() {
     const { store, eventStream } = this.context;
     if (!store.state.task) {
-      const called = this.parts.name.value.trim() || "first-task";
+      const called = this.elements.name.value.trim() || "first-task";
       const name = idOf(called);
       await put(resourcePath("tasks", name || called), { scene: "paper", display_name: displayNameOf(called) });
       store.set({ task: store.state.task || name });
@@ -228,23 +228,23 @@ class DemonstrationPanel {
   }
 
   #render() {
-    const { parts, context } = this;
+    const { elements, context } = this;
     const session = this.session;
     const { task, tasks } = context.store.state;
     document.documentElement.dataset.session = session?.phase ?? "";
-    parts.idle.hidden = session !== null;
-    parts.active.hidden = session === null;
-    parts.nameField.hidden = Boolean(task) || tasks === null;
-    if (this.#headsetReason !== null) block(parts.headset, this.#headsetReason);
-    parts.why.textContent = this.#headsetReason ?? "";
+    elements.idle.hidden = session !== null;
+    elements.active.hidden = session === null;
+    elements.nameField.hidden = Boolean(task) || tasks === null;
+    if (this.#headsetReason !== null) block(elements.headset, this.#headsetReason);
+    elements.why.textContent = this.#headsetReason ?? "";
     if (!session) return;
-    if (session.phase !== "countdown") parts.statusText.textContent = sessionText(session);
-    parts.demonstrations.replaceChildren(...session.demonstrations.map(demonstrationRow));
+    if (session.phase !== "countdown") elements.statusText.textContent = sessionText(session);
+    elements.demonstrations.replaceChildren(...session.demonstrations.map(demonstrationRow));
     const [isKept, isDiscarded] = [false, true].map((discarded) =>
       session.demonstrations.some((one) => Boolean(one.discarded_ns) === discarded),
     );
-    block(parts.discard, isKept ? "" : "There is no take to discard.");
-    block(parts.undo, isDiscarded ? "" : "No take was discarded.");
-    parts.figures.replaceChildren(senderFacts(session.sender));
+    block(elements.discard, isKept ? "" : "There is no take to discard.");
+    block(elements.undo, isDiscarded ? "" : "No take was discarded.");
+    elements.figures.replaceChildren(senderFacts(session.sender));
   }
 }

@@ -4,7 +4,7 @@ import { waysOfDemonstrations } from "../store.js";
 import { formatNumber } from "../texts.js";
 import { fitProjection, thumbnail } from "../thumbnail.js";
 import { wayClass } from "../way_colors.js";
-import { verdictExplanation } from "./demonstration_parts.js";
+import { verdictExplanation } from "./demonstration_elements.js";
 
 /** @type {Record<string, string>} */
 export const MARK_SYMBOLS = { "": "☆", good: "★", bad: "⚑" };

@@ -4,7 +4,7 @@ import { displayNameOf, idOf, taskTitle } from "../display_names.js";
 import { blocked, closestData, element, hint } from "../elements.js";
 import { fileCard, formatColumns, parseColumns } from "../files/file_card.js";
 import { FileImport, NO_MARKS, numbered } from "../files/file_import.js";
-import { importProgress, importSummary, standing } from "../files/import_parts.js";
+import { importProgress, importSummary, standing } from "../files/import_elements.js";
 import { listenForMarks } from "../files/mark_input.js";
 import { isName, nameRefusal } from "../names.js";
 import { readNumber } from "../number_input.js";

@@ -6,7 +6,7 @@ import { TeleopSession } from "../hand/teleop_session.js";
 import { XrHand, xrUnavailableReason } from "../hand/xr_hand.js";
 import { ReconnectingSocket } from "../reconnecting_socket.js";
 import { activeExecution, changesAny } from "../store.js";
-import { createParts, HEADSET, PAGE_HAND, refill, teleopText } from "./teleop_parts.js";
+import { createElements, HEADSET, PAGE_HAND, refill, teleopText } from "./teleop_elements.js";
 
 const KEYS =
   "Lead the arm: hold Enter, arrows move, Page Up and Page Down change the height, G closes and opens the gripper";
@@ -36,8 +36,8 @@ class TeleopPanel {
   /** @param {HTMLElement} place @param {Context} context */
   constructor(place, context) {
     this.context = context;
-    this.parts = createParts();
-    const { all, begin, grip, finish, hand } = this.parts;
+    this.elements = createElements();
+    const { all, begin, grip, finish, hand } = this.elements;
     place.append(...all);
     begin.addEventListener("click", () => this.#begin());
     grip.addEventListener("click", () => this.session?.toggleGripper());
@@ -80,7 +80,7 @@ class TeleopPanel {
     const { usesPageHand, usesHeadset } = this.session;
     if (usesPageHand && !usesHeadset) this.context.overlay.setKeyboardLabel(KEYS);
     this.#render();
-    this.parts.clutch.focus();
+    this.elements.clutch.focus();
   }
 
   /**
@@ -88,7 +88,7 @@ class TeleopPanel {
    * @param {() => boolean} isWanted whether nobody has ended it meanwhile
    */
   async #lead(isWanted) {
-    const [hand, calibration] = [this.parts.hand.value, this.parts.calibration.value];
+    const [hand, calibration] = [this.elements.hand.value, this.elements.calibration.value];
     const usesHeadset = hand === HEADSET;
     const usesPageHand = usesHeadset || hand === PAGE_HAND;
     if (usesHeadset) await this.#startHeadset(); // the headset's session first: it must come from the click itself
@@ -97,7 +97,7 @@ class TeleopPanel {
     const session = new TeleopSession(this.context.overlay, scene, arm, {
       usesPageHand,
       usesHeadset,
-      button: this.parts.clutch,
+      button: this.elements.clutch,
       onChange: () => this.#render(),
       onError: (why) => this.#onError(why),
     });
@@ -109,7 +109,7 @@ class TeleopPanel {
       throw error;
     }
     const tracker = usesPageHand ? { tracker: session.name } : { tracker: hand, calibration, clutch: session.name };
-    const orientation = this.parts.orientation.value ? { orientation: this.parts.orientation.value } : {};
+    const orientation = this.elements.orientation.value ? { orientation: this.elements.orientation.value } : {};
     const { id } = await post("teleoperation", { ...tracker, ...orientation, scene: scene.name }, lease.headers);
     if (isWanted()) this.#execution = id;
     else await this.context.armStop.request(stopPath(id));
@@ -181,7 +181,7 @@ class TeleopPanel {
       return;
     }
     const text = teleopText(status, this.session);
-    if (this.parts.statusText.textContent !== text) this.parts.statusText.textContent = text;
+    if (this.elements.statusText.textContent !== text) this.elements.statusText.textContent = text;
     this.headset?.rig.setText(text);
   }
 
@@ -194,31 +194,31 @@ class TeleopPanel {
     const headset = (await xrUnavailableReason()) === "" ? [HEADSET] : [];
     if (request !== this.#listed) return; // other trackers are here meanwhile
     const others = trackers.map(({ name }) => name).filter((name) => !name.startsWith("page-"));
-    refill(this.parts.hand, [PAGE_HAND, ...headset, ...others]);
+    refill(this.elements.hand, [PAGE_HAND, ...headset, ...others]);
     if (trackers.length) {
       /** @type {MeasuredCalibration[] | null} */
       const measured = await get("calibrations").catch(() => null);
       const names = measured?.map(({ calibration }) => calibration.name);
-      if (names && request === this.#listed) refill(this.parts.calibration, ["identity", ...new Set(names)]);
+      if (names && request === this.#listed) refill(this.elements.calibration, ["identity", ...new Set(names)]);
     }
     this.#render();
   }
 
   #render() {
-    const { parts, session, context } = this;
+    const { elements, session, context } = this;
     const { state } = context.store;
     const isOthers = Boolean(state.lease?.holder) && !lease.held;
-    parts.idle.hidden = session !== null;
-    parts.active.hidden = session === null;
-    block(parts.begin, this.#isBeginning ? "It begins." : beginBlocker(state, isOthers));
-    parts.calibrationField.hidden = [PAGE_HAND, HEADSET, ""].includes(parts.hand.value);
+    elements.idle.hidden = session !== null;
+    elements.active.hidden = session === null;
+    block(elements.begin, this.#isBeginning ? "It begins." : beginBlocker(state, isOthers));
+    elements.calibrationField.hidden = [PAGE_HAND, HEADSET, ""].includes(elements.hand.value);
     if (!session) return;
-    parts.grip.hidden = !session.usesPageHand || session.usesHeadset;
-    parts.clutch.hidden = session.usesHeadset;
-    block(parts.grip, session.clutchPressed ? "" : "Hold the clutch first.");
-    parts.grip.textContent = session.handClosed ? "Open the gripper" : "Close the gripper";
-    parts.clutch.classList.toggle("pressed", session.clutchPressed);
-    parts.clutch.setAttribute("aria-pressed", String(session.clutchPressed));
+    elements.grip.hidden = !session.usesPageHand || session.usesHeadset;
+    elements.clutch.hidden = session.usesHeadset;
+    block(elements.grip, session.clutchPressed ? "" : "Hold the clutch first.");
+    elements.grip.textContent = session.handClosed ? "Open the gripper" : "Close the gripper";
+    elements.clutch.classList.toggle("pressed", session.clutchPressed);
+    elements.clutch.setAttribute("aria-pressed", String(session.clutchPressed));
     if (state.executor) this.#showStatus(state.executor);
   }
 }

@@ -22,7 +22,7 @@ const HELP = [
 ];
 const DEMONSTRATION_HELP = "No glove? Carry the object in the view yourself; the recorder takes it like any tracker.";
 
-export function createParts() {
+export function createElements() {
   /** @param {string} text @param {import("../elements.js").Attributes} attributes */
   const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
   const start = button("Show it here", { class: "primary" });

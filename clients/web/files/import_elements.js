@@ -1,6 +1,6 @@
 // What is said of an import: how it stands, how far it is, what became of each file.
 import { element, progressBar } from "../elements.js";
-import { verdictExplanation } from "../panels/demonstration_parts.js";
+import { verdictExplanation } from "../panels/demonstration_elements.js";
 import { pluralize } from "../texts.js";
 
 /** @param {import("./file_import.js").ImportFile[]} files */

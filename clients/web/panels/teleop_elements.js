@@ -27,7 +27,7 @@ const ORIENTATION_RULES = {
   follow: "Where the arm can't turn so far, the tool turns less first, then stays short; that is said while it does.",
 };
 
-export function createParts() {
+export function createElements() {
   /** @param {string} text @param {import("../elements.js").Attributes} attributes */
   const button = (text, attributes = {}) => element("button", { type: "button", ...attributes }, text);
   /** @param {HTMLElement} input @param {string} text */
