@@ -27,6 +27,7 @@ from tests.system.operators import Operator
 from tests.system.processes import Service
 from tests.system.stories import Fingers, Mouse, tell
 from tests.system.visits import Visit
+from tests.waiting import wait_until
 
 LOW_HEIGHT = START[2] + 0.05  # [m]
 SIZE = (900, 420)  # which leaves the machine to the sampling
@@ -58,7 +59,8 @@ def test_the_whole_story_is_told_by_mouse_and_takes_are_discarded_and_brought_ba
         hand.show()
     takes = service.station.demonstrations("by-mouse")
     words = [take.verdict for take in takes]
-    assert visit.page.locator("#demonstration-session .demonstration-list li .verdict").all_inner_texts() == words
+    shown = visit.page.locator("#demonstration-session .demonstration-list li .verdict")
+    wait_until(lambda: shown.all_inner_texts() == words, "the page shows the verdicts of both takes")
     for take in takes:  # a machine that is too busy for the declared rate makes it a repaired one
         assert take.verdict in ("clean", "repaired"), take.reasons
         assert has_no_gaps(take)
