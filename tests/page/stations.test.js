@@ -1,6 +1,7 @@
 // Whose demonstrations, jobs and executions are shown where several stations share a store.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { demonstrationFacts } from "../../clients/web/panels/demonstration_facts.js";
 import { ofShownStation, StationWatch, shownStation, stationLabels, stationNames } from "../../clients/web/stations.js";
 import { INITIAL_STATE } from "../../clients/web/store.js";
 
@@ -45,4 +46,24 @@ test("a section hears of other stations once, and not of what jobs report", () =
   assert.ok(watch.hasChanged(several, new Set(["jobs"])));
   assert.ok(!watch.hasChanged({ ...several, jobs: [...list] }, new Set(["jobs"])));
   assert.ok(watch.hasChanged({ ...several, shownStation: "" }, new Set(["shownStation"])));
+});
+
+test("what is said of all demonstrations is said of those that are listed", () => {
+  const one = { verdict: "clean", discarded_ns: 0, duration: 2, statistics: { lost: 3 } };
+  const made = list.flatMap(({ station }) => [
+    { ...one, station },
+    { ...one, station, discarded_ns: 7 },
+  ]);
+  for (const [shown, count] of [
+    ["cell-2", 2],
+    ["cell-1", 2],
+    ["", 3],
+  ]) {
+    const known = demonstrationFacts(at("cell-2", { demonstrations: made, shownStation: shown }));
+    assert.equal(known.count, count);
+    const facts = Object.fromEntries(known.facts);
+    assert.deepEqual([facts.Clean, facts["Samples lost"]], [String(count), String(3 * count)]);
+  }
+  const theirsAlone = at("cell-2", { demonstrations: [{ ...one, station: "cell-1" }] });
+  assert.deepEqual(demonstrationFacts(theirsAlone), { count: 0, facts: [] });
 });

@@ -2,9 +2,10 @@
 import { patch, post, resourcePath } from "../api.js";
 import { blocked, closestData, codeBlock, definitionList, element, hint, option } from "../elements.js";
 import { patchChildren } from "../patch_children.js";
-import { ofShownStation, StationWatch, stationLabels } from "../stations.js";
+import { ofShownStation, StationWatch, shownStation, stationLabels } from "../stations.js";
 import { changesAny, waysOfDemonstrations } from "../store.js";
-import { capitalize, formatNumber, pluralize } from "../texts.js";
+import { capitalize, pluralize } from "../texts.js";
+import { demonstrationFacts } from "./demonstration_facts.js";
 import { filterDemonstrations, groupsWithWays, NO_FILTER, ORDERS } from "./demonstration_filter.js";
 import { demonstrationRow, MARK_SYMBOLS, thumbnailMaker } from "./demonstration_rows.js";
 import { DemonstrationSelection } from "./demonstration_selection.js";
@@ -59,7 +60,7 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
 
   /** @param {State} state */
   function render(state) {
-    const [ways, all] = [waysOfDemonstrations(state), state.demonstrations ?? []];
+    const [ways, all] = [waysOfDemonstrations(state), ofShownStation(state, state.demonstrations)];
     const found = filtered(state);
     page = Math.max(0, Math.min(page, Math.ceil(found.length / PAGE_SIZE) - 1));
     const shown = found.slice(page * PAGE_SIZE, (page + 1) * PAGE_SIZE);
@@ -76,7 +77,8 @@ export function demonstrationList(place, { store, sceneLayers, attempt, readOnly
     );
     for (const box of rows.querySelectorAll("input")) box.checked = box.hasAttribute("checked");
     rows.querySelector("ol")?.scrollTo(0, scrolled);
-    patchChildren(foot, !readOnly && all.length > 0 && orders(state.task, all));
+    const ofTask = state.demonstrations ?? []; // its orders and files are for all stations
+    patchChildren(foot, !readOnly && ofTask.length > 0 && orders(state.task, ofTask));
   }
 
   return {
@@ -123,11 +125,12 @@ function filterTools(onChoice) {
 }
 
 /**
- * What is known of all demonstrations together.
+ * What is known of all demonstrations together that are listed.
  * @param {State} state
  * @returns {Child}
  */
-function summary({ task, tasks, demonstrations, guidance }) {
+function summary(state) {
+  const { task, tasks, demonstrations, guidance } = state;
   if (demonstrations === null && tasks === null) return hint(SERVICE_AWAY_SENTENCE);
   if (!demonstrations?.length) {
     return [
@@ -135,12 +138,17 @@ function summary({ task, tasks, demonstrations, guidance }) {
       codeBlock(`teachpath-client synthetic --task ${task || "demo"} --scene paper`),
     ];
   }
-  const kept = demonstrations.filter((d) => !d.discarded_ns);
-  const count = element("strong", {}, kept.length.toLocaleString("en"));
+  const { count, facts } = demonstrationFacts(state);
+  if (!facts.length) return hint(`No demonstration of ${shownStation(state)} yet; the header shows those of others.`);
   return [
-    element("p", { class: "count" }, count, ` ${pluralize(kept.length, "demonstration")}`),
+    element(
+      "p",
+      { class: "count" },
+      element("strong", {}, count.toLocaleString("en")),
+      ` ${pluralize(count, "demonstration")}`,
+    ),
     guidance[task] && element("p", { class: "guidance" }, `${capitalize(guidance[task])}.`),
-    definitionList(facts(kept)),
+    definitionList(facts),
   ];
 }
 
@@ -198,20 +206,6 @@ function orders(task, all) {
       task,
       kept.some(({ verdict }) => verdict !== "reject"),
     ),
-  ];
-}
-
-/** @param {Demonstration[]} kept @returns {Fact[]} */
-function facts(kept) {
-  /** @param {string} verdict */
-  const count = (verdict) => kept.filter((d) => d.verdict === verdict).length;
-  const mean = kept.reduce((sum, d) => sum + d.duration, 0) / kept.length;
-  return [
-    ["Clean", String(count("clean"))],
-    ["Repaired", count("repaired")],
-    ["Not usable", count("reject")],
-    ["Mean transport", kept.length > 0 && formatNumber(mean, 1, "s")],
-    ["Samples lost", String(kept.reduce((sum, d) => sum + d.statistics.lost, 0))],
   ];
 }
 
