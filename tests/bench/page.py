@@ -15,7 +15,7 @@ from tests.bench.report import Figure, against
 
 POINTS = 20  # control points of the path that is dragged
 FRAME = 16.0  # [ms] limit of a frame
-ANSWER = 300.0  # [ms] limit from release to verdict
+ANSWER = 150.0  # [ms] limit from release to verdict
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]
 

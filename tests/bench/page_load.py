@@ -1,4 +1,4 @@
-"""What the page loads over the line until its scene is drawn, in a headless Chromium: bytes and requests."""
+"""What the page loads over the line until its scene is drawn, in a headless Chromium: bytes, requests and time."""
 
 import shutil
 import tempfile
@@ -13,6 +13,15 @@ from tests.bench.page import BROWSERS, FLAGS
 from tests.bench.report import Figure, against, print_report
 
 MAX_KB = 600.0  # [kB] asked for
+FIRST_PAINT_LIMIT, SCENE_LIMIT = 0.3, 1.5  # [s] asked for, from the request on
+SCENE_SCRIPT = """
+  new MutationObserver((_, observer) => {
+    if (document.documentElement?.dataset.scene !== "ready") return;
+    performance.mark("scene ready");
+    observer.disconnect();
+  }).observe(document, { subtree: true, attributes: true, attributeFilter: ["data-scene"] });
+"""
+INSTANT_SCRIPT = "(name) => performance.getEntriesByName(name)[0].startTime / 1000"
 KINDS = {"/web/": "modules and style sheets", "/vendor/": "the viewer", "/api/": "REST"}
 
 
@@ -33,8 +42,8 @@ def measure() -> list[Figure]:
             return _figures(*_loaded(browser, url))
 
 
-def _loaded(browser: str, url: str) -> tuple[Counter[str], Counter[str]]:
-    """Open the page; return bytes over the line and requests, by kind."""
+def _loaded(browser: str, url: str) -> tuple[Counter[str], Counter[str], list[float]]:
+    """Open the page; return bytes and requests, by kind, and when it painted first and its scene stood [s]."""
     from playwright.sync_api import sync_playwright
 
     kinds: dict[str, str] = {}
@@ -62,16 +71,21 @@ def _loaded(browser: str, url: str) -> tuple[Counter[str], Counter[str]]:
         line.on("Network.requestWillBeSent", on_request)
         line.on("Network.loadingFinished", on_end)
         line.on("Network.webSocketFrameReceived", on_frame)
+        page.add_init_script(SCENE_SCRIPT)
         page.goto(url)
         page.wait_for_selector("html[data-scene=ready]", state="attached", timeout=120_000)
         page.wait_for_load_state("networkidle")
+        times = [page.evaluate(INSTANT_SCRIPT, name) for name in ("first-contentful-paint", "scene ready")]
         running.close()
-    return sizes, requests
+    return sizes, requests, times
 
 
-def _figures(sizes: Counter[str], requests: Counter[str]) -> list[Figure]:
+def _figures(sizes: Counter[str], requests: Counter[str], times: list[float]) -> list[Figure]:
     total = sum(sizes.values()) / 1000
+    first_paint, scene_ready = times
     return [
+        against("its first paint", [first_paint], "s", name="asked for", value=FIRST_PAINT_LIMIT),
+        against("its scene is drawn", [scene_ready], "s", name="asked for", value=SCENE_LIMIT),
         against("the page, until its scene is drawn", [total], "kB", name="asked for", value=MAX_KB),
         *(Figure(f"  {kind}", (size / 1000,), "kB") for kind, size in sizes.most_common()),
         Figure("requests", (float(sum(requests.values())),), "requests"),

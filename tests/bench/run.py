@@ -20,6 +20,7 @@ from tests.bench import (
     model_arms,
     motion,
     page,
+    page_load,
     plans,
     recording,
     recording_load,
@@ -81,6 +82,7 @@ def main() -> None:
     print_report("Setpoints on a busy machine", setpoint_delay.measure(seconds=5.0 if quick else 15.0))
     print_report("A stop while the station is busy", stop_latency.measure(stops=100 if quick else 600))
     print_report("A doctor that is killed and run again", doctor_kills.measure(count=20 if quick else 200))
+    print_report("What the page loads", page_load.measure())
     print_report("The editor in the page", page.measure(drags=5 if quick else 20))
     print(f"took {time.monotonic() - began:.0f} s")
 
