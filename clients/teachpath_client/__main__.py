@@ -24,6 +24,8 @@ from teachpath_client.ros2.commands import COMMAND_HELP as ABOUT_ROS2
 from teachpath_client.ros2.commands import add_ros2
 from teachpath_client.station import Station
 from teachpath_client.status import Status
+from teachpath_client.stop_command import COMMAND_HELP as ABOUT_STOP
+from teachpath_client.stop_command import add_stop
 from teachpath_client.synthetic import experiment_1, experiment_2
 from teachpath_client.tracker import Routine, Tracker
 from teachpath_client.tracker_calibration import COLUMNS, lines, measure_points, read_points
@@ -47,6 +49,7 @@ COMMAND_HELP = {
     "replay": "Play stored demonstrations as if they were live: every sample again at its pace, recorded anew.",
     "driver-check": "Check a driver of an arm before a station moves the arm by it: setpoints come late, doubled, in "
     "bursts or not at all, and a verdict is given for every rule of the contract. No station is needed.",
+    "stop": ABOUT_STOP,
     "ros2": ABOUT_ROS2,
     "tracker-check": "Check a tracker of your own before a station records from it: the check listens as a station "
     "does, your tracker connects and shows something once, and a verdict is given for every rule of the contract "
@@ -97,16 +100,18 @@ def parser_of_commands() -> argparse.ArgumentParser:
     replay.set_defaults(run=_replay)
     add_driver_check(commands.add_parser("driver-check", help="check a driver of an arm against the contract"))
     add_tracker_check(commands.add_parser("tracker-check", help="check a tracker against the contract"))
+    add_stop(halt := commands.add_parser("stop", help="stop the arm over the bus, without the web service"))
     add_ros2(commands.add_parser("ros2", help="show the arm to ROS 2: joint states, TF, the trajectory of a plan"))
     for command in (tracker, synthetic, replay):
         command.add_argument("--task", default="demo", help="what is demonstrated (%(default)s)")
         command.add_argument("--scene", default="", help="makes a new task with this scene, e.g. paper or empty")
         command.add_argument("--calibration", default="", help="of the tracker's frame; default: the task's own")
         command.add_argument("--tracker", default="glove-1", help="name of this tracker (%(default)s)")
+        command.add_argument("--speed", type=_speed, default=1.0, help="1 = real time (default)")
+    for command in (tracker, synthetic, replay, halt):
         command.add_argument("--endpoint", default="tcp/127.0.0.1:7447", help="the station's (%(default)s)")
         command.add_argument("--prefix", default="teachpath/station", help="of the station's keys (%(default)s)")
         command.add_argument("--login", metavar="FILE", default="", help="as `teachpath login create` wrote it")
-        command.add_argument("--speed", type=_speed, default=1.0, help="1 = real time (default)")
     for name, command in commands.choices.items():
         command.description = COMMAND_HELP[name]
     return parser

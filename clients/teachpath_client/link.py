@@ -75,6 +75,10 @@ class Link:
         """Call `receive` with all that is published on `key`; it runs on Zenoh's thread and should only append."""
         return self._session.declare_subscriber(key, lambda sample: receive(sample.payload.to_bytes()))
 
+    def put(self, key: str, payload: bytes) -> None:
+        """Publish once on `key`, ahead of all that waits; where the line is full it is dropped."""
+        self._session.put(key, payload, priority=zenoh.Priority.REAL_TIME, express=True)
+
     def announce(self, key: str) -> Any:
         """Show on `key` that this client is alive, until it leaves or dies."""
         return self._session.liveliness().declare_token(key)

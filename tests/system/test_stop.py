@@ -19,12 +19,16 @@ from teachpath.io.bus import BusSettings, open_bus
 from teachpath.motion.planning.signature import SigningKey
 from teachpath.records import Command, ExecutorStatus
 from teachpath.robot.stopper import Stopper
+from teachpath_client.__main__ import main
+from teachpath_client.bus_stop import stop_over_bus
 from teachpath_client.errors import NotStopped
+from teachpath_client.link import Link
 from teachpath_client.models import Plan
 from teachpath_proto.control import CommandVerb, ExecutorState
 from teachpath_proto.logins import Login, Role, find_login
 from tests.system.access import barriers
-from tests.system.processes import Service, run, stop_arm
+from tests.system.processes import Command as Process
+from tests.system.processes import Service, confirmed, run, stop_arm
 from tests.system.stop_places import stop_faults
 from tests.system.test_lateness import executor, ready_plan
 from tests.system.visits import KEYS, Server, Visit
@@ -34,6 +38,7 @@ pytestmark = pytest.mark.system
 
 STOP = KEYS.executor_stop
 CREEP = 0.02  # share of the speed at which the end of the path is far, however late the next order comes
+SLOW_OVERRIDE = 0.05  # share of the speed at which the arm is on its way for longer than a lease lasts
 WARNING = "Press the emergency stop of the arm"
 
 
@@ -164,6 +169,8 @@ def test_an_executor_that_does_not_answer_is_said_to_be_not_stopped(
         assert said.process.returncode == 1
         assert "NOT STOPPED" in said.err
         assert "stopped:" not in said.out
+        with Link(service.endpoint, role=Role.OPERATOR) as link, pytest.raises(NotStopped, match=WARNING.lower()):
+            stop_over_bus(link, execution, timeout=0.2)
         visit.wait(lambda: visit.page.evaluate("teachpath.state().executor === null"))
         assert pressed(visit) == "NOT STOPPED"
     finally:
@@ -173,6 +180,38 @@ def test_an_executor_that_does_not_answer_is_said_to_be_not_stopped(
     visit.page.close()
     said_stopped = lambda: run("stop", "--url", service.url, folder=tmp_path).out.startswith("stopped: ")  # noqa: E731
     wait_until(said_stopped, "the command says that it is stopped")
+
+
+def test_the_arm_stops_over_the_bus_alone(service: Service, plan: Plan, capsys: pytest.CaptureFixture[str]) -> None:
+    execution = begin(service, plan)
+    confirmed(lambda: stop_by_client(service))
+    assert capsys.readouterr().out.startswith(f"stopped: {execution} ")
+    wait_ended(service, execution)
+    assert service.station.get_execution(execution).status.reason == "stopped by teachpath-client stop"
+
+
+def stop_by_client(service: Service) -> bool:
+    try:
+        main(["stop", "--endpoint", service.endpoint])
+    except SystemExit as ended:
+        raise NotStopped(str(ended)) from None
+    return True
+
+
+def test_the_arm_is_held_when_the_program_in_control_is_killed(service: Service, plan: Plan, tmp_path: Path) -> None:
+    station = service.station
+    station.wait_for_arm(timeout=HANG)
+    before = {each.id for each in station.executions()}
+    moving = lambda: [e for e in station.executions() if e.id not in before and e.status.cycles > 0]  # noqa: E731
+    killed = Process("run", plan.id, "--url", service.url, "--override", str(SLOW_OVERRIDE), folder=tmp_path)
+    try:
+        (execution,) = wait_until(moving, "the arm moves")
+    finally:
+        killed.clean_up()  # as kill -9
+    wait_until(lambda: station.get_execution(execution.id).status.state == "held", "the arm is held")
+    wait_until(lambda: station.get_lease().holder == "", "nobody is in control")
+    stop_arm(station, execution.id)
+    wait_ended(service, execution.id)
 
 
 # the attack

@@ -79,6 +79,8 @@ class DriverCheck:
         return {
             "follows a move, no faster than it was sent": lambda: self._follows(on_time),
             "comes to rest on the way when setpoints end, says so, and goes on from there": self._starves,
+            "comes to rest where it is stopped on the way, and goes on from there": self._stops,
+            "follows an executor that begins anew, with numbers from zero, where the arm rests": self._restarts,
             "is made no faster by a burst of overdue setpoints": self._takes_no_burst,
             "plays setpoints once that come twice and out of order": lambda: self._follows(doubled),
             "goes on over single setpoints that are lost": lambda: self._follows(with_losses),
@@ -126,6 +128,23 @@ class DriverCheck:
         onward = Move(move.execution, move.rest_of(came[-1].cycle), move.end, move.first_cycle + COUNT)
         came = self._play(onward, on_time)
         return self._too_fast(onward, came) or self._not_at(onward.end)
+
+    def _stops(self) -> str:
+        move = self._next_move().stopped_at(COUNT // 2)
+        came = self._play(move, on_time)
+        fault = self._too_fast(move, came) or self._off_line(move, came) or self._not_at(move.rest)
+        onward = Move(move.execution, move.rest, move.end, move.first_cycle + COUNT)
+        came = self._play(onward, on_time)
+        return fault or self._too_fast(onward, came) or self._off_line(onward, came) or self._not_at(onward.end)
+
+    def _restarts(self) -> str:
+        move = self._next_move()
+        middle = COUNT // 2
+        came = self._play(move, lambda index: [0.0] if index < middle else [])
+        fault = self._off_line(move, came) or self._not_resting(move, middle)
+        anew = Move(_new_id(), self._position() if fault else move.rest_of(came[-1].cycle), move.end)
+        came = self._play(anew, on_time)
+        return fault or self._too_fast(anew, came) or self._off_line(anew, came) or self._not_at(anew.end)
 
     def _takes_no_burst(self) -> str:
         move = self._next_move()

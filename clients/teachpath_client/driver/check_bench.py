@@ -17,7 +17,7 @@ from teachpath_proto.motion_pb2 import JointState
 from teachpath_proto.sessions import listening, open_session
 
 WAIT_INTERVAL: Final = 0.2  # [s] between two looks for the driver
-WARNING = "The check moves every joint by 0.2 rad and back, ten times. Is the arm's space clear? [y/N] "
+WARNING = "The check moves every joint by 0.2 rad and back, seven times. Is the arm's space clear? [y/N] "
 
 
 class BusBench:

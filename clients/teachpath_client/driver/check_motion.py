@@ -61,6 +61,10 @@ class Move:
             way_to_rest_acceleration=accelerations,
         )
 
+    def stopped_at(self, index: int) -> StoppedMove:
+        """Return this move with a stop that begins behind setpoint `index`."""
+        return StoppedMove(self.execution, self.begin, self.end, self.first_cycle, self.gripper_closed, index)
+
     def rest_of(self, cycle: int) -> Array:
         """Return where (joints,) the way to rest of setpoint `cycle` ends [rad]."""
         time = (cycle - self.first_cycle - STANDSTILL) * PERIOD
@@ -80,6 +84,45 @@ class Move:
     def _packed_way_to_rest(self, time: float) -> tuple[bytes, bytes, bytes]:
         places, velocities, accelerations = np.moveaxis(self._way_to_rest(time).astype("<f8"), 1, 0)
         return places.tobytes(), velocities.tobytes(), accelerations.tobytes()
+
+
+@dataclass(frozen=True, eq=False)
+class StoppedMove(Move):
+    """A move that somebody stops: its setpoints come to rest on their line, and then stand still.
+
+    Attributes:
+        last: index of the last setpoint that knows nothing of the stop.
+    """
+
+    last: int = COUNT
+
+    @property
+    def rest(self) -> Array:
+        """(joints,) where it rests [rad]."""
+        return self.rest_of(self.first_cycle + self.last)
+
+    def setpoint(self, index: int, begin_ns: int) -> Setpoint:
+        """Return the setpoint `index`; behind the last one, a state of that one's way to rest with what is left."""
+        setpoint = super().setpoint(min(index, self.last), begin_ns)
+        if index <= self.last:
+            return setpoint
+        ways = (setpoint.way_to_rest, setpoint.way_to_rest_velocity, setpoint.way_to_rest_acceleration)
+        places, velocities, accelerations = (np.frombuffer(way, "<f8").reshape(-1, len(self.end)) for way in ways)
+        row, is_over = min(index - self.last, len(places)) - 1, index - self.last >= len(places)
+        still = np.zeros(len(self.end))
+        return Setpoint(
+            cycle=self.first_cycle + index,
+            nominal_ns=begin_ns + round(1e9 * index * PERIOD),
+            sent_ns=begin_ns + round(1e9 * index * PERIOD),
+            position=places[row],
+            velocity=still if is_over else velocities[row],
+            acceleration=still if is_over else accelerations[row],
+            gripper_closed=self.gripper_closed,
+            execution=self.execution,
+            way_to_rest=places[row + 1 :].tobytes(),
+            way_to_rest_velocity=velocities[row + 1 :].tobytes(),
+            way_to_rest_acceleration=accelerations[row + 1 :].tobytes(),
+        )
 
 
 def _profile(time: float) -> tuple[float, float, float]:

@@ -83,7 +83,8 @@ def _examine_system(config: Path | None, data: Path | None, json_: bool) -> int:
     ports = [("web.port", settings.web.host, settings.web.port)]
     if settings.bus.mode != "client":
         ports.append(("bus.endpoint", host.strip("[]"), int(port)))
-    findings = list(examine_system(Path(settings.store.data_dir), ports, running_services()))
+    running = [service.url for service in running_services()]
+    findings = list(examine_system(Path(settings.store.data_dir), ports, running))
     if json_:
         print(json.dumps([asdict(finding) for finding in findings], indent=2))
     else:

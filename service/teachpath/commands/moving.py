@@ -10,12 +10,13 @@ import typer
 from teachpath.commands.options import Config, Json, Url, connected, stop_addresses
 from teachpath.commands.printing import print_answer, print_json
 from teachpath.commands.progress import execution_shown, progress_bar
-from teachpath.commands.references import find_execution, find_path, find_plan
+from teachpath.commands.references import find_path, find_plan
 from teachpath.errors import TeachpathError, UnusableInput
 from teachpath_client.errors import ClientError
 from teachpath_proto.control import ExecutorState
 
 if TYPE_CHECKING:
+    from teachpath import records
     from teachpath_client.models import Execution, ExecutorStatus
     from teachpath_client.station import Station
 
@@ -101,14 +102,16 @@ def stop(
     """Stop the arm on its path, whoever moves it.
 
     It says "stopped" when the executor's own status shows it; else it says NOT STOPPED and ends with exit status 1,
-    while the service goes on trying. Where it is not clear which service is meant, all that you run are told. This is
+    while the service goes on trying. A service of yours on this machine that does not answer within 0.3 s is passed by:
+    the stop goes over its bus, too. Where it is not clear which service is meant, all that you run are told. This is
     not an emergency stop.
     """
+    from teachpath.commands.stopping import stop_arm
+
     failed: TeachpathError | ClientError | None = None
     for address in [url] if url else stop_addresses():
         try:
-            with connected(address) as station:
-                status = station.stop(find_execution(station, execution)).status if execution else station.stop_arm()
+            status = stop_arm(address, execution)
         except (TeachpathError, ClientError) as error:  # the others are told all the same
             failed = failed or error
             continue
@@ -117,7 +120,7 @@ def stop(
         raise failed
 
 
-def _at_rest(status: ExecutorStatus) -> str:
+def _at_rest(status: ExecutorStatus | records.ExecutorStatus) -> str:
     if not ExecutorState(status.state).is_resting:
         return f"{status.execution} comes to rest on its path"
     return f"{status.execution} has {status.state}" if status.execution else "nothing moves the arm"

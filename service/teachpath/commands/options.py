@@ -131,7 +131,7 @@ def address() -> str:
         return named
     from teachpath.io.running_services import running_services
 
-    running = running_services()
+    running = [service.url for service in running_services()]
     if len(running) > 1:
         raise UnusableInput(f"several services run: {', '.join(running)}; say which with --url")
     return running[0] if running else LOCAL_ADDRESS
@@ -144,7 +144,7 @@ def stop_addresses() -> list[str]:
     try:
         return [address()]
     except TeachpathError:
-        return running_services() or [LOCAL_ADDRESS]
+        return [service.url for service in running_services()] or [LOCAL_ADDRESS]
 
 
 def web_address(settings: Settings) -> str:

@@ -71,7 +71,7 @@ def serving(settings: Settings) -> Iterator[Station]:
             thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, name="web", daemon=True)
             thread.start()
             try:
-                with short_pauses(), announced(web_address(settings)):
+                with short_pauses(), announced(web_address(settings), settings.bus.endpoint, settings.bus.prefix):
                     yield station
             finally:
                 server.should_exit = True

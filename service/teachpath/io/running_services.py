@@ -1,4 +1,4 @@
-"""The services of this user that run: each leaves its address in a file, which it holds locked while it lives."""
+"""The services of this user that run: each leaves its addresses in a file, which it holds locked while it lives."""
 
 from __future__ import annotations
 
@@ -7,9 +7,25 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from teachpath_proto.logins import logins_path
+
+
+@dataclass(frozen=True, order=True)
+class RunningService:
+    """A service of this user that runs.
+
+    Attributes:
+        url: of its web port.
+        endpoint: where its bus is joined; empty: it does not say.
+        prefix: of the keys on its bus.
+    """
+
+    url: str
+    endpoint: str = ""
+    prefix: str = ""
 
 
 def running_folder() -> Path:
@@ -18,7 +34,7 @@ def running_folder() -> Path:
 
 
 @contextmanager
-def announced(url: str) -> Iterator[None]:
+def announced(url: str, endpoint: str = "", prefix: str = "") -> Iterator[None]:
     """Let programs of this user find the service at `url` meanwhile; without a place to write they find none."""
     file = running_folder() / f"{os.getpid()}.json"
     try:
@@ -29,7 +45,7 @@ def announced(url: str) -> Iterator[None]:
         return
     with stream:
         fcntl.flock(stream, fcntl.LOCK_EX)
-        stream.write(json.dumps({"url": url}))
+        stream.write(json.dumps(asdict(RunningService(url, endpoint, prefix))))
         stream.flush()
         try:
             yield
@@ -37,17 +53,17 @@ def announced(url: str) -> Iterator[None]:
             file.unlink(missing_ok=True)
 
 
-def running_services() -> list[str]:
-    """Return the addresses of the services of this user that run, in order; what a killed one left is removed."""
+def running_services() -> list[RunningService]:
+    """Return the services of this user that run, in the order of their addresses; what a killed one left is removed."""
     found = []
     for file in running_folder().glob("*.json"):
         try:
             with file.open() as stream:
                 if _is_held(stream.fileno()):
-                    found.append(str(json.load(stream)["url"]))
+                    found.append(RunningService(**json.load(stream)))
                 else:
                     file.unlink(missing_ok=True)
-        except (OSError, ValueError, KeyError):
+        except (OSError, ValueError, TypeError):
             continue
     return sorted(found)
 

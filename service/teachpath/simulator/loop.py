@@ -81,7 +81,7 @@ class Simulator:
         robot = self._robot
         with realtime_threads(self._settings.realtime):
             handles = [
-                self._bus.subscribe(self._keys.setpoint(robot), self._receive),
+                self._bus.subscribe(self._keys.setpoint(robot), lambda _, payload: self.receive(payload)),
                 self._bus.subscribe(self._keys.executor_status, lambda _, payload: self._statuses.append(payload)),
             ]
         handles += [
@@ -130,6 +130,11 @@ class Simulator:
             self._wake.set()
             return wire.encode_state(self._state(self._clock()))
 
+    def receive(self, payload: bytes) -> None:
+        """Take the message of a setpoint, for the next step."""
+        self._setpoints.append(payload)
+        self._wake.set()
+
     def step(self, now: int) -> None:
         """Advance by 1 ms from `now` [ns since the Unix epoch]; publish a joint state in every tenth step."""
         with self._lock:
@@ -164,10 +169,6 @@ class Simulator:
             if now > since:  # the clock may be set back
                 self._player.advance((now - since) / 1e9, now)
         return now
-
-    def _receive(self, _: str, payload: bytes) -> None:
-        self._setpoints.append(payload)
-        self._wake.set()
 
     def _publish(self, state: JointState) -> None:
         payload = wire.encode_state(state)
