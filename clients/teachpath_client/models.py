@@ -1905,6 +1905,23 @@ class ToolPose:
 
 
 @dataclass(frozen=True)
+class Touch:
+    """A place at which a tracker was held still.
+
+    Attributes:
+        tracker: its name.
+        position: mean of the readings, in the tracker's frame [m].
+        deviation: of the reading farthest from it [m].
+        readings: how many there were.
+    """
+
+    tracker: str
+    position: tuple[float, float, float]
+    deviation: float
+    readings: int
+
+
+@dataclass(frozen=True)
 class Tracker:
     """A tracker that is there.
 

@@ -22,6 +22,7 @@ from teachpath_client.models import (
     SceneVersion,
     StoredArm,
     Task,
+    Touch,
     Trajectory,
     Upload,
 )
@@ -126,6 +127,10 @@ class TaskResources(Rest):
         taught = [{"tracker": tracker, "world": world} for tracker, world in points]
         body = {"points": taught, "source": source, "fit_scale": fit_scale, "keep": keep, "author": author}
         return self._ask(MeasuredCalibration, "PUT", f"/calibrations/{name}", body)
+
+    def touch(self, tracker: str, *, hold_time: float = 1.0) -> Touch:
+        """Return where a tracker sees itself [m, tracker], held still from now on for `hold_time` [s]."""
+        return self._ask(Touch, "POST", f"/trackers/{tracker}/touches", {"hold_time": hold_time})
 
     # tasks and their demonstrations
 

@@ -53,8 +53,8 @@ from teachpath.realtime import realtime_threads
 from teachpath.recorder.calibrations import Calibrations
 from teachpath.recorder.guidance import GuidanceThread, read_course
 from teachpath.recorder.queries import RecorderQueries
-from teachpath.recorder.recorder import DemonstrationCallbacks, Recorder
-from teachpath.recorder.recording_setup import Lookup
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import DemonstrationCallbacks, Lookup
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Array, Demonstration
 from teachpath.robot.certificate_status import CertificateStatus

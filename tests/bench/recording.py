@@ -21,8 +21,8 @@ from teachpath.io.store.settings import StoreSettings
 from teachpath.io.store.store import Store
 from teachpath.motion.collision.builtin_scenes import paper_scene
 from teachpath.recorder.queries import RecorderQueries
-from teachpath.recorder.recorder import DemonstrationCallbacks, Recorder
-from teachpath.recorder.recording_setup import Lookup
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import DemonstrationCallbacks, Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, RecordingRequest, StopRequest, Trajectory
 from teachpath_client.synthetic import RATE

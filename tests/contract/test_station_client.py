@@ -56,6 +56,8 @@ def test_the_station_describes_itself(station: Station) -> None:
         "client", [((x, y, 0.0), (x + 0.1, y, 0.0)) for x, y in ((0, 0), (1, 0), (0, 1))], keep=False
     )
     assert measured.calibration.offset == pytest.approx((0.1, 0.0, 0.0))
+    with pytest.raises(Refused, match="there is no tracker 'ghost' now"):
+        station.touch("ghost")
 
 
 def test_a_task_is_learned_and_its_outcome_is_read(station: Station, shown: str) -> None:

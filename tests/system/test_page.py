@@ -23,6 +23,7 @@ from tests.system.packages import Package
 from tests.system.processes import Service, run
 from tests.system.stop_places import WIDTHS, stop_faults
 from tests.system.test_station import record
+from tests.system.touching import calibrate_by_touch
 from tests.system.visits import Visit
 from tests.waiting import HANG
 
@@ -115,6 +116,7 @@ def test_tasks_and_scenes_are_made_and_changed_in_the_page_and_kept_through_a_re
     assert (another.scene, another.object_at_grasp) == ("empty", True)
     rename_delete_and_undo(visit, service, TASK)
     edit_the_scene(visit, service)
+    calibrate_by_touch(visit, service)
     page.select_option("#task", TASK)
     page.reload()
     page.wait_for_selector("html[data-scene=ready]", state="attached")

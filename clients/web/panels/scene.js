@@ -1,5 +1,6 @@
 // Scene: what stands around the arm, by numbers; shown in the view before it is saved, and saved as a new version.
 import { ApiError, get, resourcePath } from "../api.js";
+import { CalibrationGuide } from "../calibration/calibration_guide.js";
 import { offerNamed } from "../display_names.js";
 import { block, closestData, element, foldedSection, hint, section } from "../elements.js";
 import { icon } from "../icons.js";
@@ -72,6 +73,12 @@ class ScenePanel {
     };
     this.fields = new ShapeFields(section(place, "scene-shape", "The chosen shape"), { scene, change, refuse });
     this.drag = new ShapeDrag(context.overlay, { change, preview: (shape) => this.#preview(shape) });
+    this.guide = new CalibrationGuide(foldedSection(place, "calibration", "Calibrate by touch"), context, {
+      scene,
+      shape: () => this.#draft && shapeAt(this.#draft.scene, this.#chosen),
+      changeShape: change,
+      changeScene: (moved, what) => this.#change(moved, what, this.#chosen),
+    });
     const saving = section(place, "scene-saving", "Save");
     this.versions = foldedSection(place, "scene-versions", "Versions");
     const foot = element("div", { class: "edit-foot" }, this.head.state);
@@ -104,7 +111,8 @@ class ScenePanel {
 
   /** @param {State} state @param {Changed} changed */
   update(state, changed) {
-    if (!this.#isShown || !changesAny(changed, "task", "tasks", "identity")) return;
+    if (!this.#isShown || !changesAny(changed, "task", "tasks", "identity", "trackers")) return;
+    if (changed.has("trackers")) this.guide.show();
     if (changed.has("identity")) this.#render();
     if (!this.#picked && sceneOfTask(state) !== this.#draft?.name) this.context.attempt(() => this.#readAgain());
   }
@@ -113,10 +121,12 @@ class ScenePanel {
     this.#isShown = true;
     this.#render();
     this.context.attempt(() => this.#readAgain());
+    this.context.attempt(() => this.guide.readCalibrations());
   }
 
   hide() {
     this.#isShown = false;
+    this.guide.hide();
     this.context.sceneLayers.preview(null, null);
     this.drag.show(null);
   }
@@ -209,6 +219,7 @@ class ScenePanel {
     this.list.show(draft?.scene ?? null, this.#chosen);
     this.fields.show(shape, this.#chosen?.part ?? null);
     this.floor.show(draft?.scene ?? null);
+    this.guide.show();
     const missing = missingSentence(this.context.store.state.identity, ["teach"]);
     this.saving.show(draft, missing, select.options.length < 2);
     patchChildren(this.versions, sceneVersions(this.#versions, draft?.base ?? 0));

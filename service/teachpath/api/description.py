@@ -75,6 +75,7 @@ PATH_PARAMETERS: Final = {
     "scene": "name of the scene",
     "second": "number of the version that is compared",
     "task": "name of the task",
+    "tracker": "name of the tracker",
     "verb": "what the arm does on its path",
 }
 ALWAYS_ANSWERED: Final = {"stop_execution", "stop_arm"}  # whatever comes with the request

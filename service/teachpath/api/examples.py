@@ -45,6 +45,7 @@ REQUESTS: Final[dict[str, dict[str, Any]]] = {
     "NewTask": {"scene": "paper", "calibration": "lab"},
     "NewTeleoperation": {"tracker": "glove", "scale": 0.5, "clutch": "pedal"},
     "NewToken": {"name": "cell-3", "roles": ["operate"], "days": 30.0},
+    "NewTouch": {"hold_time": 1.0},
     "NewVersion": {"base": 1, "curve": CURVE, "name": "higher over the rim", "author": "ada"},
     "Override": {"override": 0.3},
     "Page": {"path": "/"},

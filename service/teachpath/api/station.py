@@ -46,6 +46,7 @@ from teachpath.api.robot import robot_router
 from teachpath.api.scenes import scenes_router
 from teachpath.api.strict_requests import refuse_unknown
 from teachpath.api.tasks import tasks_router
+from teachpath.api.touches import touches_router
 from teachpath.api.trackers import trackers_router
 from teachpath.api.uploads import uploads_router
 from teachpath.api.versions import versions_router
@@ -151,6 +152,7 @@ ROUTERS: Final = (  # of the REST API, in the order of its description
     recording_router,
     exports_router,
     calibrations_router,
+    touches_router,
     jobs_router,
     results_router,
     versions_router,

@@ -6,7 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from teachpath.errors import Conflict
 from teachpath.io.bus import Bus, Handle
@@ -14,7 +14,13 @@ from teachpath.io.store.store import Store
 from teachpath.recorder.annotations import Annotations
 from teachpath.recorder.feedback import FeedbackPublisher
 from teachpath.recorder.presence import Presence, Tracker
-from teachpath.recorder.recording_setup import Lookup, RecordingSetup, check_request, find_setup
+from teachpath.recorder.recording_setup import (
+    DemonstrationCallbacks,
+    Lookup,
+    RecordingSetup,
+    check_request,
+    find_setup,
+)
 from teachpath.recorder.recording_thread import RecordingThread
 from teachpath.recorder.recording_work import Call, call_directly
 from teachpath.recorder.resumption import Resumption
@@ -24,36 +30,21 @@ from teachpath.recorder.sample_totals import RecordingTotals, SampleTotals
 from teachpath.recorder.session import RecordingSession
 from teachpath.recorder.suspendable_session import SuspendableSession
 from teachpath.recorder.take import FinishedTake
+from teachpath.recorder.touches import Touches
 from teachpath.recorder.tracker_owners import TrackerOwners
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import (
     Amendment,
-    Demonstration,
     RecordingRequest,
     RecordingState,
     RecordingStatus,
     StopRequest,
-    Trajectory,
 )
 from teachpath_proto.keys import Keys
 
 MAX_SHOWN_HANDS = 32  # more would hide each other
 
 log: logging.Logger = logging.getLogger("teachpath")
-
-
-@dataclass(frozen=True)
-class DemonstrationCallbacks:
-    """What the recorder calls when demonstrations come or change.
-
-    Attributes:
-        added: called with each new demonstration, on a thread that completes takes; the next take of its recording
-            waits for it.
-        changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
-    """
-
-    added: Callable[[Demonstration, Trajectory], None] = lambda demonstration, trajectory: None
-    changed: Callable[[Demonstration], None] = lambda demonstration: None
 
 
 class Recorder:
@@ -67,6 +58,7 @@ class Recorder:
         annotations: changes stored demonstrations.
         owners: which session each tracker's name belongs to.
         rows: stores the rows of takes.
+        touches: measures places that are touched with a tracker.
     """
 
     def __init__(
@@ -90,6 +82,7 @@ class Recorder:
         self._clock = clock
         self.owners: TrackerOwners = TrackerOwners(keys, clock)
         self._presence = Presence(clock)
+        self.touches: Touches = Touches(keys, self._presence)
         self._queues = SampleQueues(keys, self._presence, settings.longest_backlog)
         self.rows: RowQueue = RowQueue(store)
         self._recording = RecordingThread(
@@ -277,6 +270,7 @@ class Recorder:
 
     def _on_sample(self, key: str, payload: bytes, source: str) -> None:  # on the transport's thread
         self._queues.on_sample(key, payload)
+        self.touches.on_sample(key, payload)
         self.owners.on_sample(key, payload, source)
 
     def _count_missed(self, count: int) -> None:  # on the transport's thread

@@ -12,7 +12,7 @@ from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.store import Store
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.take import random_id
-from teachpath.records import Calibration, ObjectPose, RecordingRequest, Routine, Scene
+from teachpath.records import Calibration, Demonstration, ObjectPose, RecordingRequest, Routine, Scene, Trajectory
 from teachpath_proto.keys import is_name, name_refusal
 
 MAX_RATE: Final = 10_000.0  # [Hz] that a client may declare
@@ -90,3 +90,17 @@ def check_request(request: RecordingRequest) -> None:
             raise UnusableInput(name_refusal(what, name))
     if not 0.0 <= request.rate <= MAX_RATE:
         raise UnusableInput(f"a rate of {request.rate:g} Hz is outside 0 (not said) to {MAX_RATE:g}")
+
+
+@dataclass(frozen=True)
+class DemonstrationCallbacks:
+    """What the recorder calls when demonstrations come or change.
+
+    Attributes:
+        added: called with each new demonstration, on a thread that completes takes; the next take of its recording
+            waits for it.
+        changed: called with each demonstration that an operator has discarded, restored, marked or trimmed.
+    """
+
+    added: Callable[[Demonstration, Trajectory], None] = lambda demonstration, trajectory: None
+    changed: Callable[[Demonstration], None] = lambda demonstration: None

@@ -7,8 +7,8 @@ from teachpath.io.memory_bus import MemoryBus
 from teachpath.io.store.store import Store
 from teachpath.io.wire import encode_sample
 from teachpath.recorder.queries import RecorderQueries
-from teachpath.recorder.recorder import DemonstrationCallbacks, Recorder
-from teachpath.recorder.recording_setup import Lookup
+from teachpath.recorder.recorder import Recorder
+from teachpath.recorder.recording_setup import DemonstrationCallbacks, Lookup
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import Calibration, Demonstration, Sample, Scene, Shape, Trajectory
 from teachpath_proto import tracker_pb2

@@ -8,6 +8,7 @@ declare global {
   type AdaptationModel = Schemas["AdaptationModel"];
   type Assessment = Schemas["Assessment"];
   type Certificate = Schemas["Certificate"];
+  type Calibration = Schemas["Calibration"];
   type Cluster = Schemas["Cluster"];
   type Curve = Schemas["Curve"];
   type Cut = Schemas["Cut"];
@@ -43,5 +44,6 @@ declare global {
   type Task = Schemas["Task"];
   type TimeSeries = Schemas["TimeSeries"];
   type TrackerState = Schemas["Tracker"];
+  type TouchedPlace = Schemas["Touch"];
   type Version = Schemas["Version"];
 }
