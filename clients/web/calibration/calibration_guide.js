@@ -3,7 +3,7 @@ import { get, put, resourcePath } from "../api.js";
 import { block, element } from "../elements.js";
 import { missingSentence } from "../identity.js";
 import { readNumber } from "../number_input.js";
-import { refill } from "../panels/teleop_parts.js";
+import { refill } from "../panels/teleop_elements.js";
 import { patchChildren } from "../patch_children.js";
 import { capitalize } from "../texts.js";
 import { ABOUT_AIM, calibrationParts, lengthText, MIN_POINTS, placeText } from "./calibration_parts.js";
