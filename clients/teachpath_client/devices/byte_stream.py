@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import socket
+from abc import ABC, abstractmethod
 from typing import Final, Protocol
 
 from teachpath_client.errors import ClientError
 
 READ_SIZE: Final = 65_536  # bytes
 OPEN_TIMEOUT: Final = 5.0  # [s]
+PORTS: Final = range(1, 65_536)
 SHORTEST_WAIT: Final = 1e-3  # [s]; a timeout of 0 would mean that nobody waits for the first byte either
 
 
@@ -36,8 +38,18 @@ class ByteStream(Protocol):
         """Send bytes."""
 
 
-class TcpStream:
-    """A TCP connection.
+def split_address(option: str, text: str, port: int) -> tuple[str, int]:
+    """Return host and port of HOST or HOST:PORT; `port` where none is said. Raises ClientError that names `option`."""
+    host, mark, said = text.rpartition(":")
+    if not mark:
+        return text, port
+    if not said.isdecimal() or int(said) not in PORTS:
+        raise ClientError(f"{option}={text}: {said!r} is no port, 1 to {PORTS[-1]}")
+    return host, int(said)
+
+
+class _SocketStream(ABC):
+    """A socket that is connected with one address.
 
     Args:
         host: name or address.
@@ -54,8 +66,7 @@ class TcpStream:
         """Connect."""
         self.close()
         try:
-            self._socket = socket.create_connection(self._address, OPEN_TIMEOUT)
-            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self._socket = self._connect()
         except (OSError, OverflowError) as error:  # of a port that is none
             raise ClientError(f"nobody answers at {self.path}: {error}") from None
 
@@ -75,8 +86,7 @@ class TcpStream:
             return b""
         except OSError as error:
             raise ClientError(f"the connection with {self.path} is gone: {error}") from None
-        if not content:
-            raise ClientError(f"{self.path} has closed the connection")
+        self._check(content)
         return content
 
     def write(self, content: bytes) -> None:
@@ -88,7 +98,45 @@ class TcpStream:
         except OSError as error:
             raise ClientError(f"the connection with {self.path} is gone: {error}") from None
 
+    @abstractmethod
+    def _connect(self) -> socket.socket:
+        """Return a connected socket; raises OSError."""
+
+    @abstractmethod
+    def _check(self, content: bytes) -> None:
+        """Raise ClientError when what came says that the other end has closed."""
+
     def _connected(self) -> socket.socket:
         if self._socket is None:
             raise ClientError(f"there is no connection with {self.path}")
         return self._socket
+
+
+class TcpStream(_SocketStream):
+    """A TCP connection."""
+
+    def _connect(self) -> socket.socket:
+        connection = socket.create_connection(self._address, OPEN_TIMEOUT)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return connection
+
+    def _check(self, content: bytes) -> None:
+        if not content:
+            raise ClientError(f"{self.path} has closed the connection")
+
+
+class UdpStream(_SocketStream):
+    """Datagrams from one address; each read returns one."""
+
+    def _connect(self) -> socket.socket:
+        family, kind, protocol, _, address = socket.getaddrinfo(*self._address, type=socket.SOCK_DGRAM)[0]
+        connection = socket.socket(family, kind, protocol)
+        try:
+            connection.connect(address)
+        except OSError:
+            connection.close()
+            raise
+        return connection
+
+    def _check(self, content: bytes) -> None:
+        """Do nothing: an empty datagram is one."""

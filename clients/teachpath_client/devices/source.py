@@ -102,7 +102,7 @@ def describe_sources() -> dict[str, str]:
 def configure(kind: type[Settings], options: Mapping[str, str], *, prefix: str = "") -> Settings:
     """Return the settings dataclass `kind` with its fields read from texts; messages show names with `prefix`.
 
-    Fields may be str, int, float, tuple[int, ...] (separated by commas) or a Literal of texts.
+    Fields may be str, int, float, tuple[int, ...] or tuple[float, ...] (separated by commas) or a Literal of texts.
 
     Raises:
         ClientError: an option is unknown, missing, or not of its kind.
@@ -124,7 +124,7 @@ def _value(name: str, text: str, hint: Any) -> Any:
             raise ClientError(f"{name}={text} is not one of {', '.join(get_args(hint))}")
         return text
     try:
-        return tuple(int(part) for part in text.split(",")) if get_origin(hint) is tuple else hint(text)
+        return tuple(map(get_args(hint)[0], text.split(","))) if get_origin(hint) is tuple else hint(text)
     except ValueError as error:
         raise ClientError(f"{name}={text} is not usable: {error}") from error
 

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from teachpath_client.devices.byte_stream import ByteStream, TcpStream
+from teachpath_client.devices.byte_stream import ByteStream, TcpStream, split_address
 from teachpath_client.devices.connection import Connection
 from teachpath_client.devices.live_device import READ_TIMEOUT, LiveDevice
 from teachpath_client.devices.source import Capabilities, configure
@@ -15,7 +15,6 @@ from teachpath_client.errors import ClientError
 from teachpath_client.reading import HandReading
 
 GRASP_BUTTON = 1
-PORTS = range(1, 65_536)
 Record = Pose | Button
 
 
@@ -37,16 +36,6 @@ class VrpnSettings:
     wait: float = 5.0
     # [s] without a pose after which the server is connected anew
     silence: float = 5.0
-
-    @property
-    def address(self) -> tuple[str, int]:
-        """Host and port of the server; raises ClientError."""
-        host, mark, port = self.server.rpartition(":")
-        if not mark:
-            return self.server, PORT
-        if not port.isdecimal() or int(port) not in PORTS:
-            raise ClientError(f"server={self.server}: {port!r} is no port, 1 to {PORTS[-1]}")
-        return host, int(port)
 
 
 class VrpnProtocol:
@@ -98,7 +87,7 @@ class VrpnSource(LiveDevice[Record]):
     """
 
     def __init__(self, settings: VrpnSettings, *, clock: Callable[[], float] = time.monotonic) -> None:
-        line, protocol = TcpStream(*settings.address), VrpnProtocol(settings, clock)
+        line, protocol = TcpStream(*split_address("server", settings.server, PORT)), VrpnProtocol(settings, clock)
         super().__init__(Connection[Record](line, protocol, silence=settings.silence, clock=clock))
         self._newest, self._grasps = 0, False
 

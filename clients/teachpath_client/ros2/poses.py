@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from teachpath_client.models import Robot
 from teachpath_client.reading import Quaternion, Vector
+from teachpath_client.rotations import product, turned
 
 Pose = tuple[Vector, Quaternion]  # to parent from child: position, and a unit quaternion w, x, y, z
 
@@ -16,32 +17,6 @@ def composed(outer: Pose, inner: Pose) -> Pose:
     (x, y, z), turn = outer
     dx, dy, dz = turned(turn, inner[0])
     return (x + dx, y + dy, z + dz), product(turn, inner[1])
-
-
-def unit(turn: Quaternion) -> Quaternion:
-    """Return a quaternion with length 1."""
-    length = math.hypot(*turn)
-    w, x, y, z = (part / length for part in turn)
-    return w, x, y, z
-
-
-def product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Return the rotation that turns by `b`, then by `a`."""
-    w, x, y, z = a
-    s, i, j, k = b
-    return (
-        w * s - x * i - y * j - z * k,
-        w * i + x * s + y * k - z * j,
-        w * j - x * k + y * s + z * i,
-        w * k + x * j - y * i + z * s,
-    )
-
-
-def turned(turn: Quaternion, vector: Vector) -> Vector:
-    """Return a vector turned by a unit quaternion."""
-    w, x, y, z = turn
-    _, i, j, k = product(product(turn, (0.0, *vector)), (w, -x, -y, -z))
-    return i, j, k
 
 
 def tool_pose(robot: Robot, angles: Mapping[str, float]) -> Pose:

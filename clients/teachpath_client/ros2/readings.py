@@ -10,7 +10,8 @@ from typing import Any
 from teachpath_client.models import Robot
 from teachpath_client.reading import Quaternion, Vector
 from teachpath_client.ros2.messages import Malformed, stamp_of
-from teachpath_client.ros2.poses import Pose, composed, joint_name, tool_pose, unit
+from teachpath_client.ros2.poses import Pose, composed, joint_name, tool_pose
+from teachpath_client.rotations import unit
 from teachpath_proto.sample_rules import NOT_MEASURED, sample_fault
 
 MAX_FRAMES = 10_000  # of TF that are kept
