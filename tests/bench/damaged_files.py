@@ -1,7 +1,8 @@
 """Damaged files of every format: how many are read, refused or worse, how long the slowest takes, and how much memory.
 
 `python -m tests.bench.damaged_files COUNT [FORMAT ...]` tries COUNT files of each. It ends with 1 where a file takes
-over 2 s or 500 MB, or ends in anything but motions or a sentence.
+over 2 s or 500 MB, or ends in anything but motions or a sentence. Some libraries end their process at some files; an
+import reads in a process of its own, which is then said to have died (`tests/unit/jobs/test_limited_process.py`). Such files are counted.
 """
 
 from __future__ import annotations
@@ -12,11 +13,12 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
@@ -31,8 +33,46 @@ from tests.unit.io.readers.test_formats import ARRAYS, FILES, mat
 from tests.unit.io.readers.test_hdf5 import markers, robomimic
 from tests.unit.io.readers.test_lerobot import COLUMNS, NAME, frames
 
-Result = tuple[int, int, float, float, str]  # read, refused, slowest [s], memory [MB], what went wrong
-TIME_LIMIT, MOST_MEMORY = 2.0, 500.0  # [s], [MB]
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one file: whether it was read, its time [s], memory of the process [MB], what went wrong."""
+
+    read: bool
+    seconds: float
+    memory: float
+    fault: str
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of all files: how many were read, refused or ended their process; the slowest [s], memory [MB]."""
+
+    read: int = 0
+    refused: int = 0
+    died: int = 0
+    slowest: float = 0.0
+    memory: float = 0.0
+    fault: str = ""
+
+    @property
+    def tried(self) -> int:
+        """How many files."""
+        return self.read + self.refused + self.died
+
+    def with_outcome(self, outcome: Outcome) -> Result:
+        """Return the result with one more file."""
+        return replace(
+            self,
+            read=self.read + outcome.read,
+            refused=self.refused + (not outcome.read),
+            slowest=max(self.slowest, outcome.seconds),
+            memory=max(self.memory, outcome.memory),
+            fault=self.fault or outcome.fault,
+        )
+
+
+TIME_LIMIT, MEMORY_LIMIT = 2.0, 500.0  # [s], [MB]
 HANG = 30  # [s]
 
 
@@ -48,53 +88,58 @@ def main(count: int, chosen: list[str]) -> int:
             place.mkdir()
             files[f"rosbag {storage}"] = ("rosbag", "f.bag", write_bag(place, storage, motion(storage)))
     good = True
-    print(f"{'format':14} {'read':>6} {'refused':>8} {'slowest [s]':>12} {'memory [MB]':>12}")
+    print(f"{'format':14} {'read':>6} {'refused':>8} {'died':>6} {'slowest [s]':>12} {'memory [MB]':>12}")
     for label, (kind, name, content) in files.items():
         if not chosen or label in chosen:
-            read, refused, slowest, memory, fault = apart(partial(_try, kind, name, content, count))
-            print(f"{label:14} {read:6} {refused:8} {slowest:12.2f} {memory:12.0f} {fault}", flush=True)
-            good &= not fault and slowest <= TIME_LIMIT and memory <= MOST_MEMORY
+            all_of = try_all(kind, name, content, count)
+            print(
+                f"{label:14} {all_of.read:6} {all_of.refused:8} {all_of.died:6} {all_of.slowest:12.2f} "
+                f"{all_of.memory:12.0f} {all_of.fault}",
+                flush=True,
+            )
+            good &= not all_of.fault and all_of.slowest <= TIME_LIMIT and all_of.memory <= MEMORY_LIMIT
     return 0 if good else 1
 
 
-def apart(work: Callable[[], Any]) -> Any:
-    """Run in a process of its own, whose memory is measured; that dies with what it tried to read."""
-    near, far = multiprocessing.get_context("fork").Pipe(duplex=False)
-    process = multiprocessing.get_context("fork").Process(target=_send, args=(far, work))
-    process.start()
-    far.close()
-    try:
-        return near.recv()
-    except EOFError:
-        return 0, 0, float("nan"), float("nan"), "the process died"
-    finally:
+def try_all(kind: str, name: str, content: bytes, count: int) -> Result:
+    """Try so many damaged files in processes of their own, a new one after each that a file has ended."""
+    total = Result()
+    while total.tried < count:
+        near, far = multiprocessing.get_context("fork").Pipe(duplex=False)
+        work = partial(_try, far, kind, name, content, range(total.tried, count))
+        process = multiprocessing.get_context("fork").Process(target=work)
+        process.start()
+        far.close()
+        with suppress(EOFError):
+            while True:
+                total = total.with_outcome(near.recv())
         process.join()
+        if total.fault:
+            break
+        if total.tried < count:
+            total = replace(total, died=total.died + 1)
+    return total
 
 
-def _send(far: Connection, work: Callable[[], object]) -> None:
-    far.send(work())
-
-
-def _try(kind: str, name: str, content: bytes, count: int) -> Result:
-    read = refused = 0
-    slowest, before = 0.0, _memory()
+def _try(far: Connection, kind: str, name: str, content: bytes, numbers: range) -> None:
+    """Read damaged files and send the outcome of each."""
+    before = _memory()
     options = ReadOptions(columns=COLUMNS if kind == "lerobot" else "")
     signal.signal(signal.SIGALRM, _hangs)
-    for number in range(count):
+    for number in numbers:
         broken = damaged(content, np.random.default_rng([number, len(content)]))
-        start = time.process_time()
+        start, read, fault = time.process_time(), False, ""
         signal.alarm(HANG)
         try:
             read_motions(broken, name, kind, options, ImportSettings())
-            read += 1
+            read = True
         except UnusableInput:
-            refused += 1
+            pass
         except BaseException as error:
-            return read, refused, slowest, _memory() - before, f"file {number}: {type(error).__name__}: {error}"[:120]
+            fault = f"file {number}: {type(error).__name__}: {error}"[:120]
         finally:
             signal.alarm(0)
-        slowest = max(slowest, time.process_time() - start)
-    return read, refused, slowest, _memory() - before, ""
+        far.send(Outcome(read, time.process_time() - start, _memory() - before, fault))
 
 
 def _memory() -> float:
