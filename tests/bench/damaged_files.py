@@ -1,8 +1,8 @@
 """Damaged files of every format: how many are read, refused or worse, how long the slowest takes, and how much memory.
 
 `python -m tests.bench.damaged_files COUNT [FORMAT ...]` tries COUNT files of each. It ends with 1 where a file takes
-over 2 s or 500 MB, or ends in anything but motions or a sentence. Some libraries end their process at some files; an
-import reads in a process of its own, which is then said to have died (`tests/unit/jobs/test_limited_process.py`). Such files are counted.
+over 2 s or 500 MB, or ends in anything but motions or a sentence. Some libraries end their process at some files, which
+are counted: an import reads in a process of its own and says that it died (tests/unit/jobs/test_limited_process.py).
 """
 
 from __future__ import annotations
