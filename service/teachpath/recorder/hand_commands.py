@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from teachpath.recording.fist_gesture import FistGesture
 from teachpath.recording.phases import TOGGLE_BUTTON
+from teachpath.recording.sample_runs import SampleBlock, SampleRun
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import FistCommand, Sample, Vector
 
@@ -39,6 +42,17 @@ class HandCommands:
         if pressed:
             self.pedal_used = True
         return bool(pressed) or command is FistCommand.TOGGLE
+
+    def is_idle_in(self, run: SampleRun) -> bool:
+        """Tell whether the samples of a run that comes next command nothing."""
+        return run.pedal == bool(self._buttons & TOGGLE_BUTTON) and self._gesture.is_idle_in(run)
+
+    def observe_run(
+        self, block: SampleBlock, run: SampleRun, places: tuple[int, int], to_world: Callable[[Vector], Vector]
+    ) -> None:
+        """Add samples of a run that command nothing, from the first place to before the second."""
+        self._buttons = block.buttons[places[1] - 1]
+        self._gesture.observe_run(block, run, places, to_world)
 
     def skip(self, sample: Sample) -> None:
         """Take note of a sample whose commands were followed before."""

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from weakref import WeakSet
 
-from teachpath.errors import Conflict, NotFound, UnusableSample
-from teachpath.io.wire import decode_sample
+from teachpath.errors import Conflict, NotFound
 from teachpath.periodic_thread import PeriodicThread
+from teachpath.recorder.batch_recorder import BatchRecorder
 from teachpath.recorder.closed_take import TakeQueue
 from teachpath.recorder.presence import Presence
 from teachpath.recorder.row_queue import RowQueue
-from teachpath.recorder.sample_queues import QueueItem, SampleQueues
+from teachpath.recorder.sample_queues import SampleQueues
 from teachpath.recorder.suspendable_session import SuspendableSession
 from teachpath.recorder.take import FinishedTake
 from teachpath.recording.settings import RecordingSettings
@@ -69,6 +70,7 @@ class RecordingThread:
         self.beginning: threading.Lock = threading.Lock()
         self._completing = ThreadPoolExecutor(COMPLETING_THREADS, thread_name_prefix="takes")
         self._take_queues: WeakSet[TakeQueue] = WeakSet()  # of ended recordings too, while their takes are completed
+        self._batches = BatchRecorder(queues, presence, settings)  # used only while `condition` is held
         self._next_turn = 0  # of the running recordings, whose turn it is in the next round
         self._thread = PeriodicThread("recorder", ROUND_INTERVAL, self.process_round)
 
@@ -136,7 +138,7 @@ class RecordingThread:
     def drain(self, session: SuspendableSession) -> None:
         """Record all samples of one tracker that wait; the caller holds `condition`."""
         while batch := self._queues.pop(session.tracker, BATCH_SIZE):
-            self._record(session, batch)
+            self._batches.record([(session, batch)])
 
     def process_round(self) -> bool:
         """Record one batch of each tracker in turn, so that no tracker keeps the others waiting.
@@ -150,15 +152,10 @@ class RecordingThread:
         """
         with self.condition:
             sessions = list(self.sessions.values())
-        sessions = self._choose(sessions)
+        turns = deque(self._choose(sessions))
         now, more = self._clock(), False
-        for session in sessions:
-            if session.completer.is_behind or session.is_waiting:
-                continue
-            if not self._queues.is_empty(session.tracker) or now - session.last_flush >= FLUSH_INTERVAL:
-                more |= self._process(session, now) == BATCH_SIZE
-            elif session.is_carrying:
-                self._check_silence(session)
+        while turns:
+            more |= self._process(turns, now)
         return more
 
     def _choose(self, sessions: list[SuspendableSession]) -> list[SuspendableSession]:
@@ -166,50 +163,44 @@ class RecordingThread:
         self._next_turn = begin + TURNS_IN_A_ROUND
         return sessions[begin : self._next_turn]
 
-    def _process(self, session: SuspendableSession, now: float) -> int:
+    def _process(self, turns: deque[SuspendableSession], now: float) -> bool:
+        """Record the samples of the next trackers, together as many as a batch; return whether one's batch was full."""
+        due, batches, count, full = [], [], 0, False
         with self.condition:
-            if self.sessions.get(session.tracker) is not session:  # it has ended; what waits is of the next recording
-                return 0
-            batch = self._queues.pop(session.tracker, BATCH_SIZE)
-            self._record(session, batch)
-            if now - session.last_flush >= FLUSH_INTERVAL:
-                session.flush(now)
-            if session.pop_discard_request():
-                session.completer.call(partial(self._on_discard_request, session))
-            self.condition.notify_all()
-        return len(batch)
+            while turns and count < BATCH_SIZE:
+                session = turns.popleft()
+                # One that has ended is left: what waits is of the next recording.
+                if not self._takes_turn(session) or self.sessions.get(session.tracker) is not session:
+                    continue
+                batch = self._queues.pop(session.tracker, BATCH_SIZE)
+                count += len(batch)
+                full |= len(batch) == BATCH_SIZE
+                if batch or now - session.last_flush >= FLUSH_INTERVAL:
+                    due.append(session)
+                    batches.append((session, batch))
+                elif session.is_carrying:
+                    self._check_silence(session)
+            self._batches.record(batches)
+            for session in due:
+                if now - session.last_flush >= FLUSH_INTERVAL:
+                    session.flush(now)
+                if session.pop_discard_request():
+                    session.completer.call(partial(self._on_discard_request, session))
+            if due:
+                self.condition.notify_all()
+        return full
 
-    def _record(self, session: SuspendableSession, batch: list[QueueItem]) -> None:
-        if batch and batch[-1].payload is not None:
-            self._presence.on_sample(session.tracker)
-        if dropped := self._queues.dropped(session.tracker):
-            session.counter.note(f"{dropped} samples came faster than they can be recorded, and were turned away")
-        for item in batch:
-            self._record_item(session, item)
-
-    def _record_item(self, session: SuspendableSession, item: QueueItem) -> None:
-        payload, receive_ns = item
-        try:
-            if payload is None:
-                session.on_tracker_lost("the tracker has gone" + " in mid-take" * session.is_carrying)
-            else:
-                session.add(decode_sample(session.tracker, payload, receive_ns), payload)
-        except UnusableSample as error:
-            session.counter.count_refused(str(error), error.sequence)
-        except Exception as error:  # one take's fault must not end the others
-            session.fail(f"recording failed: {error!r}")
+    @staticmethod
+    def _takes_turn(session: SuspendableSession) -> bool:
+        return not (session.completer.is_behind or session.is_waiting)
 
     def _check_silence(self, session: SuspendableSession) -> None:
         limit = self._settings.longest_silence
         if self._presence.silence_of(session.tracker) <= limit:
             return
-        with self.condition:
-            if self.sessions.get(session.tracker) is not session:
-                return
-            # A tracker whose samples wait in its queue is not silent.
-            if not (self._queues.is_empty(session.tracker) and session.is_carrying):
-                return
-            try:
-                session.on_tracker_lost(f"no sample came for {limit:g} s in mid-take")
-            except Exception as error:  # one take's fault must not end the others
-                session.fail(f"recording failed: {error!r}")
+        if not self._queues.is_empty(session.tracker):  # it is not silent: its samples wait
+            return
+        try:
+            session.on_tracker_lost(f"no sample came for {limit:g} s in mid-take")
+        except Exception as error:  # one take's fault must not end the others
+            session.fail(f"recording failed: {error!r}")

@@ -10,11 +10,12 @@ from functools import partial
 from teachpath.io.store.store import Store
 from teachpath.recorder.closed_take import ClosedTake, Completer, DirectCompleter
 from teachpath.recorder.hand_commands import HandCommands
+from teachpath.recorder.hand_state import NewestSample, carried_pose
 from teachpath.recorder.object_place import ObjectPlace
 from teachpath.recorder.recording_setup import RecordingSetup
 from teachpath.recorder.take import FinishedTake, Take, TakeOutcome
 from teachpath.recording.arrival import Arrival
-from teachpath.recording.demonstration import object_pose, point_to_world
+from teachpath.recording.demonstration import point_to_world
 from teachpath.recording.phases import Segmenter, TransportSpan, hand_closure
 from teachpath.recording.reversed_order import ReversedOrder
 from teachpath.recording.settings import RecordingSettings
@@ -63,7 +64,7 @@ class RecordingSession:
         self._idle = 0
         self._is_torn = False
         self._take_number = 0
-        self._newest: Sample | None = None
+        self._newest = NewestSample()
         self._take = self._new_take()
         self._segmenter = Segmenter(settings, self._object.expected)
         self._commands = HandCommands(settings, self._object.expected)
@@ -108,7 +109,7 @@ class RecordingSession:
         machine.on_sample()
         position = self._to_world(sample.position)
         if fresh:
-            self._newest = sample
+            self._newest.keep((sample,))
             self._follow_commands(sample, position)
         if machine.state is RecordingState.COUNTDOWN and machine.poll_countdown(self._clock()):
             self._drop_take()
@@ -209,19 +210,15 @@ class RecordingSession:
         return self._status
 
     def _hand(self) -> HandState | None:
-        newest = self._newest
-        if newest is None or not newest.tracked:
+        if (newest := self._newest.read()) is None or not newest.tracked:
             return None
-        carried_pose = None
-        if self._segmenter.phase.has_object and (start := self._object.start) is not None:
-            grasped = self._take.samples[self._segmenter.grasp]
-            carried_pose = object_pose(grasped, newest, self._setup.calibration, start)
+        grasped = self._take.samples[self._segmenter.grasp] if self._segmenter.phase.has_object else None
         return HandState(
             position=self._to_world(newest.position),
             is_closed=hand_closure(newest) > self._settings.close_at,
             received=self.counter.received,
             take=self._take_number,
-            carried_pose=carried_pose,
+            carried_pose=carried_pose(grasped, newest, self._setup.calibration, self._object.start),
         )
 
     def _follow_commands(self, sample: Sample, position: Vector) -> None:
@@ -234,9 +231,7 @@ class RecordingSession:
 
     def _follow_phases(self, sample: Sample, payload: bytes, position: Vector) -> FinishedTake | None:
         before = self._segmenter.phase
-        if not before.has_object and self._object.has_moved():
-            self._segmenter.carried = self._object.expected
-            self._commands.on_object_moved(self._object.expected)
+        self._look_for_object()
         cut = self._segmenter.push(sample, position)
         phase = self._segmenter.phase
         if cut is not None and phase is Phase.GRASP:  # the first sample of the next take
@@ -255,6 +250,11 @@ class RecordingSession:
             if self._take.seconds > self._settings.longest_reach:
                 self._drop_take()
         return None
+
+    def _look_for_object(self) -> None:
+        if not self._segmenter.phase.has_object and self._object.has_moved():
+            self._segmenter.carried = self._object.expected
+            self._commands.on_object_moved(self._object.expected)
 
     def _close_take(
         self, cut: TransportSpan, *, fault: str = "", following: Sample | None = None

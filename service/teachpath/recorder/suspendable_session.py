@@ -10,13 +10,14 @@ from teachpath.io.store.salvage import RecordingHeader
 from teachpath.io.store.store import Store
 from teachpath.recorder.closed_take import Completer
 from teachpath.recorder.recording_setup import RecordingSetup
-from teachpath.recorder.session import RecordingSession
+from teachpath.recorder.run_session import RunSession
 from teachpath.recorder.take import FinishedTake
+from teachpath.recording.sample_runs import SampleBlock, SampleRun
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import RecordingRequest, Sample, SuspendedRecording, Vector
 
 
-class SuspendableSession(RecordingSession):
+class SuspendableSession(RunSession):
     """A recording session whose take in the hand outlasts its service.
 
     The samples of that take are recorded again from its file, so that its phases and its statistics are what they would
@@ -45,6 +46,13 @@ class SuspendableSession(RecordingSession):
         """Write one sample, as `RecordingSession.add`."""
         self.last = sample.sequence, sample.device_ns
         return super().add(sample, payload)
+
+    def add_run(self, block: SampleBlock, run: SampleRun, begin: int, payloads: Sequence[bytes]) -> int:
+        """Write samples of a run, as `RunSession.add_run`."""
+        count = super().add_run(block, run, begin, payloads)
+        if count:
+            self.last = block.sequence[begin + count - 1], block.device_ns[begin + count - 1]
+        return count
 
     def suspend(self) -> None:
         """End here, and leave the take in the hand for the next service; one whose object was released is completed."""

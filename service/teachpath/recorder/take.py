@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from teachpath.errors import UnusableRecording
@@ -14,7 +14,7 @@ from teachpath.io.store.store import Store
 from teachpath.recorder.take_completion import SegmentedTake, complete_take
 from teachpath.recording.phases import TransportSpan
 from teachpath.recording.settings import RecordingSettings
-from teachpath.records import Demonstration, ObjectPose, Sample, StreamStatistics, Trajectory, Vector
+from teachpath.records import Demonstration, ObjectPose, Sample, SampleColumns, StreamStatistics, Trajectory, Vector
 
 FinishedTake = tuple[Demonstration, Trajectory]
 
@@ -64,8 +64,7 @@ class Take:
         self._header = header
         self._note = note
         self.samples: SampleRows = SampleRows()
-        self._first: Sample | None = None
-        self._last: Sample | None = None
+        self._times: tuple[int, int, int, int] | None = None  # device_ns, receive_ns of the first and the last sample
         self.fault: str = ""
         self._id = new_id()
         self._file: RecordingFile | None = None
@@ -73,23 +72,41 @@ class Take:
     @property
     def seconds(self) -> float:
         """Duration so far, by the device's clock."""
-        return (self._last.device_ns - self._first.device_ns) * 1e-9 if self._first and self._last else 0.0
+        return self.seconds_until(self._times[2]) if self._times else 0.0
 
     @property
     def seconds_received(self) -> float:
         """Duration so far, by our clock."""
-        return (self._last.receive_ns - self._first.receive_ns) * 1e-9 if self._first and self._last else 0.0
+        return (self._times[3] - self._times[1]) * 1e-9 if self._times else 0.0
+
+    def seconds_until(self, device_ns: int) -> float:
+        """Return its duration up to a time, by the device's clock; 0 before its first sample."""
+        return (device_ns - self._times[0]) * 1e-9 if self._times else 0.0
 
     def write(self, sample: Sample, payload: bytes) -> None:
         """Add a sample, `payload` as it came."""
-        self._first, self._last = self._first or sample, sample
+        self._keep_times(sample.device_ns, sample.receive_ns, sample.device_ns, sample.receive_ns)
         self.samples.append(sample)
+        self._to_file(lambda file: file.write(sample, payload))
+
+    def write_run(self, samples: SampleColumns, payloads: Sequence[bytes]) -> None:
+        """Add samples, of which there is at least one, `payloads` as they came."""
+        device_ns, receive_ns = samples.device_ns, samples.receive_ns
+        self._keep_times(int(device_ns[0]), int(receive_ns[0]), int(device_ns[-1]), int(receive_ns[-1]))
+        self.samples.extend(samples)
+        self._to_file(lambda file: file.write_run(samples, payloads))
+
+    def _keep_times(self, device_ns: int, receive_ns: int, last_device_ns: int, last_receive_ns: int) -> None:
+        first = self._times[:2] if self._times else (device_ns, receive_ns)
+        self._times = (*first, last_device_ns, last_receive_ns)
+
+    def _to_file(self, write: Callable[[RecordingFile], None]) -> None:
         if self.fault:
             return
         try:
             if self._file is None:
                 self._file = self._store.recordings.begin(self._id, self._header)
-            self._file.write(sample, payload)
+            write(self._file)
         except OSError as error:
             self.fail(_disk_fault("written", error))
 

@@ -6,6 +6,7 @@ from array import array
 
 import numpy as np
 
+from teachpath.recording.sample_runs import SampleBlock
 from teachpath.records import Clock, Sample
 
 WINDOW_SIZE = 500  # newest samples that are used: 10 s of a 50 Hz tracker
@@ -27,6 +28,16 @@ class DeviceClock:
         place = self._observed % WINDOW_SIZE
         self._device[place], self._receive[place] = sample.device_ns, sample.receive_ns
         self._observed += 1
+
+    def observe_run(self, block: SampleBlock, begin: int, end: int) -> None:
+        """Add the times of the next samples."""
+        begin = max(begin, end - WINDOW_SIZE)
+        place = self._observed % WINDOW_SIZE
+        first = min(end - begin, WINDOW_SIZE - place)  # that fit behind the newest; the others go to the beginning
+        for ring, times in ((self._device, block.device_ns), (self._receive, block.receive_ns)):
+            ring[place : place + first] = array("q", times[begin : begin + first])
+            ring[: end - begin - first] = array("q", times[begin + first : end])
+        self._observed += end - begin
 
     def restart(self) -> None:
         """Forget all samples, because the clock has jumped."""
@@ -56,3 +67,10 @@ class DeviceClock:
         least = float(transit.min())
         due = first_receive + round(1e9 * (slope * float(device[newest]) + least))
         return Clock(due - self._device[newest], round(1e9 * (float(np.median(transit)) - least)), rate)
+
+
+def rate_notes(clock: Clock | None) -> tuple[str, ...]:
+    """Return a sentence when a clock does not run as ours."""
+    if clock is None or abs(clock.rate - 1.0) <= REAL_TIME_TOLERANCE:
+        return ()
+    return (f"the device's clock runs {clock.rate:.3g} x ours",)

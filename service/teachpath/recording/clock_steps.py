@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from teachpath.recording.sample_runs import SampleBlock
 from teachpath.records import Sample
 
 MAX_CLOCK_RATE = 100.0  # device seconds in one of ours; beyond it the receive times come from a burst
@@ -32,7 +33,7 @@ class ClockSteps:
         self.step_ns: int = 0
         self._receive_ns = 0
         self._stalled_ns = 0.0
-        self._last: Sample | None = None
+        self._last: tuple[int, int] | None = None  # device_ns and receive_ns of the newest sample
         self._least = self._least_before = float("inf")  # transit times [ns]
         self._transits = 0
 
@@ -53,11 +54,11 @@ class ClockSteps:
 
     def observe(self, sample: Sample, numbers: int) -> int | None:
         """Add the next sample, `numbers` after the one before; return the jump of the clock [ns] that it shows."""
-        last, self._last, self.step_ns = self._last, sample, 0
+        last, self._last, self.step_ns = self._last, (sample.device_ns, sample.receive_ns), 0
         if last is None:
-            self._add_transit(sample)
+            self._add_transits(sample.receive_ns - sample.device_ns, 1)
             return None
-        device, receive = sample.device_ns - last.device_ns, sample.receive_ns - last.receive_ns
+        device, receive = sample.device_ns - last[0], sample.receive_ns - last[1]
         if 0 < device <= self._limit_ns:  # nearly every step: it needs no explanation
             jump, self._stalled_ns = None, 0.0
         else:
@@ -70,8 +71,28 @@ class ClockSteps:
             self.device_ns += device
             self._receive_ns += receive
             self.step_ns = device
-        self._add_transit(sample)
+        self._add_transits(sample.receive_ns - sample.device_ns, 1)
         return jump
+
+    def continues(self, device_ns: int) -> bool:
+        """Tell whether a sample that comes next with this time is a step that needs no explanation."""
+        return self._last is not None and 0 < device_ns - self._last[0] <= self._limit_ns
+
+    def observe_run(self, block: SampleBlock, begin: int, end: int) -> int:
+        """Add the samples of a run that continues the newest one; return its longest step [ns]."""
+        assert self._last is not None, "a run continues a sample"
+        first, last = self._last, (block.device_ns[end - 1], block.receive_ns[end - 1])
+        self._last, self._stalled_ns = last, 0.0
+        self.steps += end - begin
+        self.device_ns += last[0] - first[0]
+        self._receive_ns += last[1] - first[1]
+        steps = [block.device_ns[begin] - first[0], *block.step_ns[begin + 1 : end]]
+        self.step_ns = steps[-1]
+        while begin < end:
+            until = min(end, begin + TRANSIT_WINDOW - self._transits)
+            self._add_transits(min(block.transit_ns[begin:until]), until - begin)
+            begin = until
+        return max(steps)
 
     def _jump(self, sample: Sample, numbers: int, device: int, receive: int) -> int | None:
         if device < 0:
@@ -93,11 +114,10 @@ class ClockSteps:
         transit = sample.receive_ns - sample.device_ns
         return rate < 2.0 and transit >= min(self._least, self._least_before) - self._limit_ns
 
-    def _add_transit(self, sample: Sample) -> None:
-        transit = sample.receive_ns - sample.device_ns
-        if transit < self._least:
-            self._least = transit
-        self._transits += 1
+    def _add_transits(self, least: int, count: int) -> None:
+        if least < self._least:
+            self._least = least
+        self._transits += count
         if self._transits == TRANSIT_WINDOW:  # a clock that drifts is compared with its own last minutes only
             self._least_before, self._least, self._transits = self._least, float("inf"), 0
 

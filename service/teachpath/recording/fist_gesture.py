@@ -7,8 +7,10 @@ demonstration; one held more than six times as long is a resting hand and comman
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from teachpath.recording.phases import hand_closure
+from teachpath.recording.sample_runs import Grip, SampleBlock, SampleRun
 from teachpath.recording.settings import RecordingSettings
 from teachpath.records import FistCommand, Sample, Vector
 
@@ -59,6 +61,27 @@ class FistGesture:
             self._held_ns = sample.device_ns - self._began
             return None
         return self._open(sample)
+
+    def is_idle_in(self, run: SampleRun) -> bool:
+        """Tell whether the samples of a run that comes next neither begin nor end a fist."""
+        if self.carried is None or not run.has_flexions or not self._settings.fist_time:
+            return True
+        return run.grip < Grip.FIST if self._began is None else run.grip > Grip.OPEN
+
+    def observe_run(
+        self, block: SampleBlock, run: SampleRun, places: tuple[int, int], to_world: Callable[[Vector], Vector]
+    ) -> None:
+        """Add samples of a run that neither begin nor end a fist, from the first place to before the second."""
+        if self._began is None or self.carried is None or not (run.has_flexions and self._settings.fist_time):
+            return
+        begin, end = places
+        for at in range(begin, end):
+            if self._is_void:
+                break
+            place = to_world(block.position(at))
+            self._is_void = block.tracked[at] and math.dist(place, self._place) > self._settings.fist_motion
+        self._opened = None
+        self._held_ns = block.device_ns[end - 1] - self._began
 
     def _begin(self, sample: Sample, position: Vector, carrying: bool) -> None:
         assert self.carried is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from teachpath.recording.settings import RecordingSettings
@@ -101,6 +102,54 @@ class Segmenter:
         else:
             return self._follow_return(sample, position, grasps)
         return None
+
+    def push_unchanged(
+        self, grip: int, device_ns: Sequence[int], places: range, position: Callable[[int], Vector]
+    ) -> int:
+        """Add the next samples, as many as change neither phase nor hint; return how many.
+
+        Args:
+            grip: where the closures of all of them lie: 0: under `open_at`, 1: under `close_at`, 2 or more: over that.
+            device_ns: by place.
+            places: of the samples.
+            position: returns that at a place [m, world].
+        """
+        count = self._count_unchanged(grip, device_ns, places, position)
+        self._count += count
+        return count
+
+    def _count_unchanged(
+        self, grip: int, device_ns: Sequence[int], places: range, position: Callable[[int], Vector]
+    ) -> int:
+        if self.phase is Phase.REACH:
+            if (grip < 2) if self._closed else grip:
+                return 0
+            self._half_closed_ns = 0
+            return len(places)
+        if self.phase is Phase.TRANSPORT:
+            return len(places) if grip else 0
+        if self.phase is not Phase.GRASP:
+            return 0 if grip else self._follow_open(device_ns, places, position)
+        if not grip:
+            return 0
+        lifted = (k for k, at in enumerate(places) if math.dist(position(at), self._place) > self._settings.lift)
+        return next(lifted, len(places))
+
+    def _follow_open(self, device_ns: Sequence[int], places: range, position: Callable[[int], Vector]) -> int:
+        """Follow an open hand after its release, as `_follow_return`, until phase or take end; return how far."""
+        returns = self.phase is Phase.RETURN
+        limit_ns = self._settings.longest_return * 1e9 if returns else self._release_ns - 1
+        for count, at in enumerate(places):
+            now_ns = device_ns[at]
+            since = now_ns - self._opened_ns
+            if since > limit_ns:
+                return count
+            self._recent.append((now_ns, position(at)))
+            if returns and since >= self._rest_ns and self._rests(now_ns):
+                self._recent.pop()
+                return count
+            self._closed = False
+        return len(places)
 
     def skip(self) -> None:
         """Count a sample that is not used for the phase: a late one or a duplicate."""

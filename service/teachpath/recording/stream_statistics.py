@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from teachpath.recording.arrival import Arrival
-from teachpath.recording.clock import REAL_TIME_TOLERANCE, DeviceClock
-from teachpath.recording.clock_steps import ClockSteps
+from teachpath.recording.clock import rate_notes
 from teachpath.recording.message_counter import IntervalMessages
 from teachpath.recording.sample_history import SampleHistory
+from teachpath.recording.sample_runs import SampleBlock
 from teachpath.recording.sequence_gaps import SequenceGaps, count_numbers
+from teachpath.recording.stream_clock import StreamClock
 from teachpath.records import Sample, StreamStatistics
 
 MAX_SEQUENCE_JUMP = 100_000  # sequence numbers; a larger gap is a restarted device, not loss
@@ -44,16 +45,13 @@ class StreamCounter:
         self._first_device_ns = 0
         self._newest_device_ns = 0
         self._history = SampleHistory()
-        self._clock_steps = ClockSteps(declared_rate, largest_clock_step)
-        self._longest_gap_ns = 0
-        self._clock = DeviceClock()
+        self._clock = StreamClock(declared_rate, largest_clock_step)
         self._interrupted = False
         self._notes = IntervalMessages("more happened than can be listed")
         self._refusals = IntervalMessages("samples were refused for other reasons")
         # the current interval
         self._interval_is_empty = True
         self._interval_first = 0  # lowest number that counts in it
-        self._interval_longest_gap_ns = 0
         self._before_interval = self._totals()
 
     def observe(self, sample: Sample) -> Arrival:
@@ -76,10 +74,26 @@ class StreamCounter:
         self._late_in_a_row = 0
         self._newest_device_ns = sample.device_ns
         self._keep(sample)
-        self._observe_clock(sample, step)
+        if jump := self._clock.observe(sample, step):
+            self.note(jump)
         if self._interval_is_empty:
             self._begin_interval_with(sample.sequence)
         return Arrival.IN_ORDER
+
+    def continues(self, sequence: int, device_ns: int) -> bool:
+        """Tell whether a sample that comes next is the next number of the interval, by a clock that runs as it did."""
+        expected = not (self._interrupted or self._interval_is_empty) and sequence == self.highest + 1
+        return expected and self._clock.steps.continues(device_ns)
+
+    def observe_run(self, block: SampleBlock, begin: int, end: int) -> None:
+        """Count the samples of a steady run that continues the newest one."""
+        self.highest, self._newest_device_ns = block.sequence[end - 1], block.device_ns[end - 1]
+        self._counts["received"] += end - begin
+        self._counts["untracked"] += block.tracked[begin:end].count(False)
+        self._gaps.reach(self.highest)
+        self._late_in_a_row = 0
+        self._history.keep_run(block.columns, begin, end)
+        self._clock.observe_run(block, begin, end)
 
     @property
     def received(self) -> int:
@@ -140,14 +154,14 @@ class StreamCounter:
         if first is not None:
             self._before_interval["received"] -= 1
             self._before_interval["untracked"] -= not first.tracked
-        self._interval_longest_gap_ns = 0
+        self._clock.begin_interval()
         self._notes.begin_interval()
         self._refusals.begin_interval()
 
     def statistics(self) -> StreamStatistics:
         """Return the statistics of all samples so far."""
         notes = self._refusals.all.messages() + self._notes.all.messages()
-        return self._statistics(self._totals(), self._longest_gap_ns, notes, first=0)
+        return self._statistics(self._totals(), self._clock.longest_gap_ns, notes, first=0)
 
     def interval(self, *, excluding: Sample | None = None) -> StreamStatistics:
         """Return the statistics of the current interval.
@@ -162,10 +176,10 @@ class StreamCounter:
         missing = self._gaps.since(self._interval_first)
         counts |= {"gaps": len(missing), "lost": count_numbers(missing)}
         notes = self._refusals.interval.messages() + self._notes.interval.messages()
-        return self._statistics(counts, self._interval_longest_gap_ns, notes, first=self._interval_first)
+        return self._statistics(counts, self._clock.interval_longest_gap_ns, notes, first=self._interval_first)
 
     def _totals(self) -> dict[str, int]:
-        clock = self._clock_steps
+        clock = self._clock.steps
         return {
             **self._counts,
             "gaps": len(self._gaps.all),
@@ -177,9 +191,7 @@ class StreamCounter:
     def _statistics(
         self, counts: dict[str, int], longest_gap_ns: int, messages: Iterable[str], *, first: int
     ) -> StreamStatistics:
-        clock, notes = self._clock.estimate(), tuple(messages)
-        if clock is not None and abs(clock.rate - 1.0) > REAL_TIME_TOLERANCE:
-            notes = (*notes, f"the device's clock runs {clock.rate:.3g} x ours")
+        clock = self._clock.estimate()
         steps, device_ns = counts.pop("steps"), counts.pop("device_ns")
         counts["lost"] = max(counts["lost"] - counts.pop("unnumbered"), 0)
         missing = self._gaps.since(first) if first else self._gaps.all
@@ -191,7 +203,7 @@ class StreamCounter:
             declared_rate=self._declared_rate,
             seen_rate=1e9 * steps / device_ns if device_ns else 0.0,
             clock=clock,
-            notes=notes,
+            notes=(*messages, *rate_notes(clock)),
             dwell_times=(),
         )
 
@@ -200,7 +212,7 @@ class StreamCounter:
         self._interval_first = sequence
         now = self._totals()
         self._before_interval |= {name: now[name] for name in ("clock_jumps", "steps", "device_ns")}
-        self._interval_longest_gap_ns = 0
+        self._clock.begin_interval()
 
     def _count_anew(self, sample: Sample) -> None:
         if self.first is not None:
@@ -210,7 +222,6 @@ class StreamCounter:
         self._first_device_ns = sample.device_ns
         self._history = SampleHistory()
         self._late_in_a_row = 0
-        self._clock_steps.restart()
         self._clock.restart()
 
     def _observe_late(self, sample: Sample) -> Arrival:
@@ -248,7 +259,7 @@ class StreamCounter:
             if device_ns is None:
                 continue
             after = sample.device_ns - device_ns if numbers > 0 else device_ns - sample.device_ns
-            if not self._clock_steps.explains(after, abs(numbers)):
+            if not self._clock.steps.explains(after, abs(numbers)):
                 return False
         return True
 
@@ -257,7 +268,7 @@ class StreamCounter:
         numbers = (self.first or 0) - sample.sequence
         if not 0 < numbers <= MAX_SEQUENCE_JUMP:
             return False
-        return self._clock_steps.explains(self._first_device_ns - sample.device_ns, numbers)
+        return self._clock.steps.explains(self._first_device_ns - sample.device_ns, numbers)
 
     def _precedes(self, sequence: int) -> bool:
         """Tell whether a number lies before the first one, and the interval began with that."""
@@ -287,14 +298,3 @@ class StreamCounter:
         for name in names:
             self._before_interval[name] += 1
             self._counts[name] += name != "received"
-
-    def _observe_clock(self, sample: Sample, step: int) -> None:
-        jump = self._clock_steps.observe(sample, step)
-        if jump is not None:
-            how = f"jumps by {jump * 1e-9:+.3g} s" if jump else "stands still"
-            self.note(f"the device's clock {how} at sample {sample.sequence}")
-            self._clock.restart()
-        else:
-            self._interval_longest_gap_ns = max(self._interval_longest_gap_ns, self._clock_steps.step_ns)
-            self._longest_gap_ns = max(self._longest_gap_ns, self._clock_steps.step_ns)
-        self._clock.observe(sample)

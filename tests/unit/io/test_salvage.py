@@ -2,6 +2,7 @@
 
 import io
 
+import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -33,7 +34,8 @@ def recording_of(payloads: list[bytes], receive_ns: list[int]) -> bytes:
     file.add_metadata(HEADER, {"header": documents.encode(STATED_HEADER).decode()})
     channel = file.add_channel(TOPIC, message_types.HAND_SAMPLE)
     if payloads:
-        file.add_messages([message_batch(channel, payloads, receive_ns, receive_ns)])
+        stamps = np.array(receive_ns, np.uint64)
+        file.add_messages([message_batch(channel, payloads, stamps, stamps)])
     file.finish()
     return stream.getvalue()
 

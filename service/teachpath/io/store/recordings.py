@@ -75,6 +75,17 @@ class RecordingFile:
         if len(self._payloads) >= BATCH_SIZE:
             self._write_batch()
 
+    def write_run(self, samples: SampleColumns, payloads: Sequence[bytes]) -> None:
+        """Append samples, `payloads` as they came."""
+        begin = 0
+        while begin < len(payloads):
+            end = min(len(payloads), begin + BATCH_SIZE - len(self._payloads))
+            self._payloads += payloads[begin:end]
+            self._samples.extend(samples[begin:end] if end - begin < len(payloads) else samples)
+            if len(self._payloads) >= BATCH_SIZE:
+                self._write_batch()
+            begin = end
+
     def flush(self) -> None:
         """Hand all that was written to the operating system; a killed process loses none of it."""
         self._write_batch()
@@ -97,8 +108,8 @@ class RecordingFile:
         if not samples:
             return
         self._samples, self._payloads = SampleRows(), []
-        columns = samples.columns()
-        lowest, highest = min(columns.sequence), max(columns.sequence)
+        columns = samples.arrays()
+        lowest, highest = int(columns.sequence.min()), int(columns.sequence.max())
         self._first = min(self._first, lowest) if self._count else lowest
         self._last = max(self._last, highest)
         self._count += len(samples)

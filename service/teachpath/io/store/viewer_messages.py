@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from itertools import chain, compress
 from typing import Final
 
 import numpy as np
@@ -17,8 +16,7 @@ from numpy.typing import NDArray
 
 from teachpath.io.store.mcap_file import McapFile
 from teachpath.io.store.mcap_messages import Bytes, MessageBatch
-from teachpath.io.store.sample_rows import ValueColumns
-from teachpath.records import Array, Calibration
+from teachpath.records import Array, Calibration, SampleColumns
 
 POSE_TOPIC, FRAMES_TOPIC = "hand_pose", "frames"
 WORLD, TRACKER = "world", "tracker"  # names of the frames
@@ -27,6 +25,8 @@ VARINT_SIZE: Final = 5  # bytes of a number from 2**28 to 2**35 - 1; a shorter o
 VARINT_SHIFTS: Final = 7 * np.arange(VARINT_SIZE)
 SECONDS_MARK, NANOS_MARK = 2**34 + 1, 2**30 + 1  # numbers of that size, for which others are put in
 NOT_TURNED: Final = (1.0, 0.0, 0.0, 0.0)
+
+Integers = NDArray[np.uint64] | NDArray[np.int64]
 
 
 class ViewerMessages:
@@ -38,23 +38,20 @@ class ViewerMessages:
         self._calibration = calibration
         self._has_frame = False
 
-    def batches(self, samples: ValueColumns) -> list[MessageBatch]:
+    def batches(self, samples: SampleColumns) -> list[MessageBatch]:
         """Return the messages of the next samples; an untracked sample has no pose to draw."""
         batches = []
         if not self._has_frame:
             self._has_frame = True
-            frame = self._frame_message(samples.receive_ns[0])
+            frame = self._frame_message(int(samples.receive_ns[0]))
             batches.append(message_batch(self._frames, [frame], samples.receive_ns[:1], samples.device_ns[:1]))
-        receive_ns, device_ns = (tuple(compress(of, samples.tracked)) for of in (samples.receive_ns, samples.device_ns))
-        positions = chain.from_iterable(compress(samples.position, samples.tracked))
-        turned = compress(samples.orientation, samples.tracked)
-        turns = chain.from_iterable([turn or NOT_TURNED for turn in turned])
+        tracked = samples.tracked
+        receive_ns, device_ns = samples.receive_ns[tracked], samples.device_ns[tracked]
+        turns = samples.orientation[tracked]
+        turns[~turns.any(axis=1)] = NOT_TURNED
         # A rigid transform has no scale; the pose carries it.
-        poses = LAYOUT.messages(
-            np.array(receive_ns, np.int64),
-            self._calibration.scale * np.fromiter(positions, np.float64).reshape(-1, 3),
-            np.fromiter(turns, np.float64).reshape(-1, 4),
-        )
+        positions = self._calibration.scale * samples.position[tracked]
+        poses = LAYOUT.messages(receive_ns.astype(np.int64), positions, turns)
         return [*batches, message_batch(self._poses, poses, receive_ns, device_ns)]
 
     def _frame_message(self, receive_ns: int) -> bytes:
@@ -70,13 +67,13 @@ class ViewerMessages:
 def message_batch(
     channel: int,
     data: Sequence[bytes] | Bytes,
-    receive_ns: Sequence[int],
-    device_ns: Sequence[int],
-    sequences: Sequence[int] | None = None,
+    receive_ns: Integers,
+    device_ns: Integers,
+    sequences: NDArray[np.uint64] | None = None,
 ) -> MessageBatch:
-    """Return n messages with the times of their samples; without `sequences` they have none."""
-    numbers = np.zeros(len(data), np.uint64) if sequences is None else np.array(sequences, np.uint64)
-    return MessageBatch(channel, numbers, np.array(receive_ns, np.uint64), np.array(device_ns, np.uint64), data)
+    """Return n messages with the times (n,) of their samples; without `sequences` (n,) they have none."""
+    numbers = np.zeros(len(data), np.uint64) if sequences is None else sequences
+    return MessageBatch(channel, numbers, receive_ns.astype(np.uint64), device_ns.astype(np.uint64), data)
 
 
 class _PoseLayout:
