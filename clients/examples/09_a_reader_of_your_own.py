@@ -14,33 +14,39 @@ from pathlib import Path
 
 import numpy as np
 
-from teachpath.errors import UnusableRecording
-from teachpath.io.import_settings import ImportSettings
-from teachpath.io.readers.contract import FileMotions, Reader, ReadOptions, Track
+import teachpath
 
 HEAD = b"WAND 1\n"
 
 
-def read_wand(content: bytes, name: str, options: ReadOptions, limits: ImportSettings) -> FileMotions:
+def read_wand(
+    content: bytes, name: str, options: teachpath.ReadOptions, limits: teachpath.ImportSettings
+) -> teachpath.FileMotions:
     """Read all lines; what every import is checked for (clock, jumps, sizes) is checked behind the reader."""
     lines = content.removeprefix(HEAD).decode(errors="replace").splitlines()
     if len(lines) > limits.max_samples:
-        raise UnusableRecording(f"{name}: {len(lines)} samples, limit {limits.max_samples}; split the file")
+        raise teachpath.UnusableRecording(f"{name}: {len(lines)} samples, limit {limits.max_samples}; split the file")
     rows = np.empty((len(lines), 5))
     for number, line in enumerate(lines):
         try:
             rows[number] = [float(cell) for cell in line.split(",")]
         except ValueError as error:
-            raise UnusableRecording(f"{name}, line {number + 2}: {line[:40]!r} is no wand reading: {error}") from None
+            raise teachpath.UnusableRecording(
+                f"{name}, line {number + 2}: {line[:40]!r} is no wand reading: {error}"
+            ) from None
     if not np.isfinite(rows).all():
-        raise UnusableRecording(f"{name}: a number is not finite; take out that line")
+        raise teachpath.UnusableRecording(f"{name}: a number is not finite; take out that line")
     stamps = np.asarray(rows[:, 0] * 1e6, np.int64)
-    return FileMotions([Track(stamps, rows[:, 1:4] / 1000.0, closure=rows[:, 4])], ("time in ms", "positions in mm"))
+    return teachpath.FileMotions(
+        [teachpath.Track(stamps, rows[:, 1:4] / 1000.0, closure=rows[:, 4])], ("time in ms", "positions in mm")
+    )
 
 
-WAND = Reader("wand", "files of a wand", read_wand, lambda content, name: content.startswith(HEAD))
+WAND = teachpath.Reader("wand", "files of a wand", read_wand, lambda content, name: content.startswith(HEAD))
 
 if __name__ == "__main__":
-    motions = read_wand(Path(sys.argv[1]).read_bytes(), sys.argv[1], ReadOptions(), ImportSettings())
+    motions = read_wand(
+        Path(sys.argv[1]).read_bytes(), sys.argv[1], teachpath.ReadOptions(), teachpath.ImportSettings()
+    )
     for track in motions.tracks:
         print(f"{len(track.positions)} readings in {track.times[-1]:.2f} s; {', '.join(motions.understood)}")

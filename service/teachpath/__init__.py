@@ -32,6 +32,8 @@ if TYPE_CHECKING:
         UnusableSettings,
     )
     from teachpath.io.arm_models.arm_reader import read_arm
+    from teachpath.io.import_settings import ImportSettings
+    from teachpath.io.readers.contract import FileMotions, OptionNeeded, Reader, ReadOptions, Track
     from teachpath.learning.settings import LearningSettings
     from teachpath.motion.arm.model import Arm
     from teachpath.motion.collision.builtin_scenes import empty_scene, paper_scene
@@ -47,6 +49,8 @@ __all__ = [
     "Cancelled",
     "Conflict",
     "Curve",
+    "FileMotions",
+    "ImportSettings",
     "Learned",
     "LearnedPath",
     "LearningFailed",
@@ -56,11 +60,14 @@ __all__ = [
     "NotFound",
     "NotSignedIn",
     "NotStopped",
+    "OptionNeeded",
     "Outdated",
     "OverLimit",
     "PathRefused",
     "Plan",
     "QueueFull",
+    "ReadOptions",
+    "Reader",
     "Scene",
     "SerialArm",
     "Shape",
@@ -69,6 +76,7 @@ __all__ = [
     "TeachpathError",
     "TooManyAttempts",
     "TooManyRequests",
+    "Track",
     "Trajectory",
     "Unanswered",
     "Unreachable",
@@ -95,7 +103,9 @@ _MODULES = {
     "plan": "python_api",
     "read_arm": "io.arm_models.arm_reader",
     "setpoints": "python_api",
-} | dict.fromkeys(("Learned", "LearnedPath", "Plan", "Scene", "SerialArm", "Shape", "Trajectory"), "records")
+    "ImportSettings": "io.import_settings",
+} | dict.fromkeys(("FileMotions", "OptionNeeded", "ReadOptions", "Reader", "Track"), "io.readers.contract")
+_MODULES |= dict.fromkeys(("Learned", "LearnedPath", "Plan", "Scene", "SerialArm", "Shape", "Trajectory"), "records")
 
 
 def __getattr__(name: str) -> object:

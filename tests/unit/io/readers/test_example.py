@@ -10,9 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from teachpath.errors import UnusableRecording
-from teachpath.io.import_settings import ImportSettings
-from teachpath.io.readers.contract import ReadOptions
+from teachpath import ImportSettings, ReadOptions, UnusableRecording
 
 EXAMPLE = Path(__file__).parents[4] / "clients" / "examples" / "09_a_reader_of_your_own.py"
 
