@@ -57,6 +57,7 @@ from teachpath.recorder.recorder import Recorder
 from teachpath.recorder.recording_setup import DemonstrationCallbacks, Lookup
 from teachpath.recorder.websocket_trackers import WebSocketTrackers
 from teachpath.records import Array, Demonstration
+from teachpath.robot.arm_lease import ArmLease
 from teachpath.robot.certificate_status import CertificateStatus
 from teachpath.robot.executions import Executions
 from teachpath.robot.joint_feed import JointFeed
@@ -84,14 +85,14 @@ class Station:
     def __init__(self, settings: Settings) -> None:
         require_roles(settings.auth.mode, settings.proxy)
         self._provider = open_provider(settings.auth.mode, settings.oidc)
-        self._lock = StationLock(Path(settings.store.data_dir))
         self.event_hub: EventHub = EventHub()
         with ExitStack() as on_failure:
-            on_failure.enter_context(self._lock)
+            self._lock = on_failure.enter_context(StationLock(Path(settings.store.data_dir)))
             store, settings = open_store(settings, self._on_change)
             self.store: Store = store
             self.settings: Settings = settings
             on_failure.callback(self.store.close)
+            self.store.services.begin()
             self.certificate: WebCertificate | None = find_certificate(settings.web, settings.store.data_dir)
             self._authority = bool(self.certificate and self.certificate.authority)
             self._signing_key = SigningKey(prepare_signing_key(settings.bus.endpoint))
@@ -116,6 +117,7 @@ class Station:
                 part.start()
             remove_leftovers(Path(self.settings.store.data_dir), self.store.awaited_uploads())
             self.jobs.start()
+            self.lease.start()
             self._shown.show_newest()
         except BaseException:
             self.__exit__(None, None, None)
@@ -125,6 +127,7 @@ class Station:
     def __exit__(self, *exception: object) -> None:
         self._state_poller.stop()
         self.access.stop()
+        self.lease.stop()
         self.processes[0].request_stop()
         first: tuple[Stoppable, ...] = (self._queries, self.recorder, self.reader, self.mesh_reader, self.guidance)
         then: tuple[Stoppable, ...] = (self.jobs, self.assessor, self.exporter, self.certificate_status, self.objects)
@@ -138,7 +141,6 @@ class Station:
     def _open_recording(self) -> None:
         """Open what knows where the objects lie, and all that records."""
         settings, store, tokens, people = self.settings, self.store, self.store.access_tokens, self.store.people
-        store.services.begin()
         self.audit: Audit = Audit(AuditLog(Path(settings.store.data_dir)))
         self.access: Access = Access(
             settings.auth, tokens, people, oidc=settings.oidc, provider=self._provider, proxy=settings.proxy
@@ -205,6 +207,7 @@ class Station:
         key, on_death = self._signing_key.secret, self.executions.end_lost
         executor = self._process("executor", Role.EXECUTOR, EXECUTOR_SUGGESTION, on_death, key=key)
         self.processes: list[SupervisedProcess] = [executor]
+        self.lease: ArmLease = ArmLease(store.services, executor)
         if settings.simulator.start:
             self.processes.append(self._process("simulator", Role.ROBOT, SIMULATOR_SUGGESTION))
 
@@ -248,7 +251,7 @@ class Station:
         notes = [note for process in self.processes if (note := process.note())]
         notes += self.recorder.faults() + self.executions.faults() + self.store.health.faults()
         notes += self.store.spool.faults() + (self._access.notes(datetime.now(UTC)) if self._access else [])
-        notes += self.access.notes() + self.audit.notes() + self.scenes.notes
+        notes += self.access.notes() + self.audit.notes() + self.scenes.notes + self.lease.notes()
         notes += self.certificate.notes(datetime.now(UTC)) if self.certificate else []
         notes += self.store.recordings.notes(self.recorder.is_writing)
         return notes + abandoned_notes(Path(self.settings.store.data_dir))

@@ -52,6 +52,25 @@ def rename_delete_and_undo(visit: Visit, service: Service, other: str) -> None:
     stands("Task another is back.", chosen="another")
 
 
+def choose_a_station(visit: Visit, counts: dict[str, int]) -> None:
+    """Look at the demonstrations of this station, then of each other one, then of all, which bear their names.
+
+    Args:
+        counts: of the task's demonstrations by station, this one first.
+    """
+    page, rows = visit.page, visit.page.locator("ol.demonstration-list > li")
+    page.locator("#station").wait_for()
+    assert page.locator("#station option").all_inner_texts() == [*counts, "all stations"]
+    assert page.locator("#station").input_value() == next(iter(counts))
+    for name, count in counts.items():
+        page.select_option("#station", name)
+        visit.wait(lambda count=count: rows.count() == count)
+        assert all(rows.filter(has_text=each).count() == 0 for each in counts)
+    page.select_option("#station", "")
+    visit.wait(lambda: rows.count() == sum(counts.values()))
+    assert {name: rows.filter(has_text=name).count() for name in counts} == counts
+
+
 def edit_the_scene(visit: Visit, service: Service) -> None:
     """Add a box and a mesh to the scene `empty`, and save them; undo that, save another scene, and remove it."""
     page, message = visit.page, visit.page.locator("#message")

@@ -156,18 +156,22 @@ class Service(Command):
     Args:
         data: its data folder.
         ports: of web and bus, to stand where another one stood; None: free ones.
+        arguments: further ones of the command.
         settings: further TEACHPATH_* variables; else it has the patience of a busy machine.
 
     Attributes:
         station: the typed client of its REST API.
     """
 
-    def __init__(self, data: Path, *, ports: tuple[int, int] | None = None, **settings: str) -> None:
+    def __init__(
+        self, data: Path, *, ports: tuple[int, int] | None = None, arguments: Sequence[str] = (), **settings: str
+    ) -> None:
         self.data = data
         web, bus = self.ports = ports or free_ports(2)
         self.url, self.endpoint = f"http://127.0.0.1:{web}", f"tcp/127.0.0.1:{bus}"
         environment = {"TEACHPATH_BUS__ENDPOINT": self.endpoint, **BUSY_SETTINGS, **settings}
-        super().__init__("serve", "--data", str(data), "--port", str(web), folder=data.parent, environment=environment)
+        words = ("serve", "--data", str(data), "--port", str(web), *arguments)
+        super().__init__(*words, folder=data.parent, environment=environment)
         self.station = Station(self.url, timeout=HANG)
 
     def __enter__(self) -> "Service":

@@ -2,7 +2,9 @@
 
 import itertools
 import re
+import sqlite3
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,10 +15,11 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from teachpath.io.documents import from_document
+from teachpath.io.store.database_files import DATABASE
 from teachpath.nurbs import Curve
 from teachpath_client.models import Run
 from tests.system.access import barriers
-from tests.system.changes import edit_the_scene, rename_delete_and_undo, tab
+from tests.system.changes import choose_a_station, edit_the_scene, rename_delete_and_undo, tab
 from tests.system.keyboard import tell_by_keyboard
 from tests.system.operators import Operator
 from tests.system.packages import Package
@@ -211,11 +214,16 @@ def test_the_cut_is_dragged_to_make_fewer_ways(visit: Visit, service: Service) -
     assert visit.said == []
 
 
-def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: Any, tmp_path: Path) -> None:
-    with Service(tmp_path / "data") as service:
+def test_of_several_stations_one_is_chosen_and_after_a_restart_the_page_shows_the_truth_again(
+    browser: Any, tmp_path: Path
+) -> None:
+    with Service(tmp_path / "data", TEACHPATH_STORE__STATION="cell-1") as service:
         learn(service, TASK)
+        with closing(sqlite3.connect(service.data / DATABASE)) as database, database:
+            database.execute("UPDATE demonstrations SET station = 'cell-2' WHERE number = 12")
         visit = Visit(browser, service.url)
         choose(visit, TASK)
+        choose_a_station(visit, {"cell-1": 11, "cell-2": 1})
         service.process.terminate()
         assert service.wait() == 0
     page = visit.page
@@ -233,7 +241,7 @@ def test_after_a_restart_of_the_service_the_page_shows_the_truth_again(browser: 
     page.wait_for_selector("#message .error:has-text('Is it running?')")
     assert barriers(page, "an error is told") == []
     tab(visit, "run")
-    with Service(service.data, ports=service.ports) as again:
+    with Service(service.data, ports=service.ports, TEACHPATH_STORE__STATION="cell-1") as again:
         again.station.make_task("made-meanwhile")
         page.wait_for_selector("html[data-connection=live][data-events=live]", state="attached")
         page.wait_for_selector("#task option[value=made-meanwhile]", state="attached")

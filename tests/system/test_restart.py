@@ -1,4 +1,4 @@
-"""A service that is stopped and started anew while a hand shows: the take in the hand is not lost."""
+"""A service that is stopped and started anew, or replaced by another, while a hand shows: no take is lost."""
 
 import itertools
 from collections.abc import Callable, Iterator
@@ -35,7 +35,7 @@ def import_files(data: Path, folder: Path) -> None:
     assert torn.err.startswith("teachpath: cannot read")
 
 
-def test_a_planned_restart_in_mid_take_loses_nothing(tmp_path: Path) -> None:
+def test_a_planned_restart_in_mid_take_loses_nothing_nor_does_another_service_in_its_place(tmp_path: Path) -> None:
     first = Service(tmp_path / "data", TEACHPATH_SIMULATOR__START="false")
     second: list[Service] = []
 
@@ -46,8 +46,14 @@ def test_a_planned_restart_in_mid_take_loses_nothing(tmp_path: Path) -> None:
     def start() -> None:
         second.append(Service(first.data, ports=first.ports).__enter__())
 
+    def replace() -> None:
+        second.append(Service(first.data, ports=first.ports, arguments=("--standby",)))
+        wait_until(lambda: "stands by" in second[1].out, "another service stands by")
+        second[0].__exit__(None, None, None)
+        second[1].__enter__()
+
     def is_back() -> None:
-        there = lambda: "glove" in [t.name for t in second[0].station.health().trackers if t.announced]  # noqa: E731
+        there = lambda: "glove" in [t.name for t in second[-1].station.health().trackers if t.announced]  # noqa: E731
         wait_until(there, "the tracker is back")
 
     with first, Link(first.endpoint) as link:
@@ -65,6 +71,14 @@ def test_a_planned_restart_in_mid_take_loses_nothing(tmp_path: Path) -> None:
             tracker.stop()
             (whole,) = service.station.demonstrations("whole")
             for now, then in zip(trajectory(service, made.id), trajectory(service, whole.id), strict=True):
+                np.testing.assert_allclose(now, then, atol=1e-6)
+            tracker.start("replaced", scene="paper")
+            tracker.publish(readings({STOP_SAMPLE: replace, SAMPLE_COUNT - 1: is_back}), speed=8.0)
+        with second[1] as service:
+            report = tracker.stop()
+            assert (report.lost, len(report.demonstrations)) == (0, 1), report
+            (replaced,) = service.station.demonstrations("replaced")
+            for now, then in zip(trajectory(service, replaced.id), trajectory(service, whole.id), strict=True):
                 np.testing.assert_allclose(now, then, atol=1e-6)
             assert service.station.health().notes == []
             (imported,) = service.station.demonstrations("files")

@@ -10,11 +10,11 @@ import socket
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from typing import TYPE_CHECKING, Final
 
 from teachpath.commands.options import web_address
-from teachpath.errors import Unreachable
+from teachpath.errors import Conflict, Unreachable
 
 if TYPE_CHECKING:
     from teachpath.app import Station
@@ -76,11 +76,37 @@ def serving(settings: Settings) -> Iterator[Station]:
             finally:
                 server.should_exit = True
                 thread.join(timeout=2.0)
+                listener.close()  # before the data folder is let go: who stands by for that listens here next
                 station.audit.note("the service", "", "ends", "")
     finally:
         gc.enable()
         os.umask(umask)
         listener.close()
+
+
+def stand_by(settings: Settings, stop: threading.Event, stack: ExitStack) -> Station | None:
+    """Enter `serving` when the service that is the station's has ended; None: `stop` was set before.
+
+    What a service needs is loaded by then.
+
+    Raises:
+        Unreachable: the web port or the Zenoh endpoint is another program's.
+        UnusableSettings: see `serving`.
+    """
+    from teachpath.offline.standby import await_turn
+    from teachpath.process_server import start_process_server
+
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    start_process_server((*PROCESS_MODULES, *PRELOADED))
+    import teachpath.app  # noqa: F401 - loads it
+
+    def say(awaited: str) -> None:
+        print(f"teachpath stands by: {awaited}", flush=True)
+
+    while await_turn(settings.store, stop, say):
+        with suppress(Conflict):  # another one that stood by was faster
+            return stack.enter_context(serving(settings))
+    return None
 
 
 def changed_settings(settings: Settings) -> str:

@@ -6,13 +6,14 @@ import os
 import sys
 import threading
 import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from teachpath.commands.options import Config, Data, motion_arm, settings_of, web_address, with_arm
-from teachpath.errors import UnusableSettings
+from teachpath.errors import Conflict, UnusableSettings
 from teachpath_proto.keys import Keys
 from teachpath_proto.logins import Role
 
@@ -33,23 +34,32 @@ def serve(
     log_format: Annotated[
         str, typer.Option(help="Of the lines of the log: text or json; as the settings say, unless set.")
     ] = "",
+    standby: Annotated[
+        bool, typer.Option("--standby", help="Where a service is the station's, wait for its end and take its place.")
+    ] = False,
 ) -> None:
     """Run the service until Ctrl-C.
 
     It records what trackers show, works on jobs, moves the simulated arm, and serves the page and the REST API.
     The port of the bus is a setting: bus.endpoint, or TEACHPATH_BUS__ENDPOINT=tcp/127.0.0.1:PORT.
     """
-    from teachpath.commands.serving import serving, until_signalled
+    from teachpath.commands.serving import serving, stand_by, until_signalled
 
     changes: dict[str, Any] = ({} if port is None else {"web": {"port": port}}) | motion_arm(arm)
     if log_format:
         changes["log"] = {"format": log_format}
     settings = settings_of(config, data, **changes)
     _log(settings.log)
-    with until_signalled() as stop, serving(settings):
+    with until_signalled() as stop, ExitStack() as stack:
+        station = stand_by(settings, stop, stack) if standby else stack.enter_context(serving(settings))
+        if station is None:
+            return
+        station.lease.when_taken(stop.set)
         print(f"teachpath serves {web_address(settings)} (API docs at /docs)", flush=True)
         print(f"trackers publish to {settings.bus.endpoint}; Ctrl-C ends it", flush=True)
         stop.wait()
+    if station.lease.taken:
+        raise Conflict(station.lease.taken)
 
 
 def worker(config: Config = None, data: Data = None) -> None:

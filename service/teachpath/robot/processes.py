@@ -88,7 +88,11 @@ class SupervisedProcess:
         self._death: tuple[float, str] | None = None  # the last one: when [s, monotonic], and its cause
 
     def start(self) -> None:
-        """Begin to start the process, which waits for the process server; it announces itself on the bus."""
+        """Begin to start the process, which waits for the process server; it announces itself on the bus.
+
+        One that was stopped is started again.
+        """
+        self._stopping.clear()
         self._supervisor = threading.Thread(target=self._supervise, name=f"{self.name} supervisor", daemon=True)
         self._supervisor.start()
 

@@ -38,8 +38,7 @@ def open_engine(url: str) -> Engine:
         UnusableSettings: `url` is none, or its driver is not installed.
         StorageUnavailable: the database cannot be opened, is damaged, or was made by a newer teachpath.
     """
-    engine = _engine_of(url)
-    event.listen(engine, "handle_error", _explain)
+    engine = unmigrated_engine(url)
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _tune_sqlite)
         event.listen(engine, "begin", _begin_sqlite)
@@ -52,6 +51,17 @@ def open_engine(url: str) -> Engine:
     except BaseException:
         engine.dispose()
         raise
+    return engine
+
+
+def unmigrated_engine(url: str) -> Engine:
+    """Return an engine of the database at `url` as it is, to look at it before another service has left it.
+
+    Raises:
+        UnusableSettings: `url` is none, or its driver is not installed.
+    """
+    engine = _engine_of(url)
+    event.listen(engine, "handle_error", _explain)
     return engine
 
 

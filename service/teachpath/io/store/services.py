@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import socket
+import time
 import uuid
 from pathlib import Path
 from typing import Final
 
-from sqlalchemy import BigInteger, ColumnElement, Engine, cast, delete, exists, func, select, true, update
+from sqlalchemy import BigInteger, ColumnElement, Engine, cast, delete, exists, func, inspect, select, true, update
 from sqlalchemy.orm import Session
 
 from teachpath.errors import Conflict, UnusableInput
@@ -26,15 +27,19 @@ class Services:
         id: of this service, another one after each start.
         station: name of the station that it works for.
         is_shared: whether other services can work on this database.
+        heard_at: when the database last heard that this service is alive, or a little before [s, monotonic].
+        taken: why this service has to end: another one is the station's now; empty: none is.
     """
 
     def __init__(self, engine: Engine, station: str, folder: Path) -> None:
         self.id: str = uuid.uuid4().hex[:12]
         self.station: str = station
         self._engine, self._writing = engine, engine.execution_options(writing=True)
-        self._place = f"{socket.gethostname()}:{folder.absolute()}"
+        self._place = _place_of(folder)
         self._role = ""
         self.is_shared: bool = is_served(engine)
+        self.heard_at: float = 0.0
+        self.taken: str = ""
 
     def begin(self, role: str = SERVICE) -> None:
         """Say that this service runs, in a role; of `SERVICE` there is one a station.
@@ -44,6 +49,7 @@ class Services:
         Raises:
             Conflict: another one runs under the name of this station.
         """
+        self.heard_at = time.monotonic()
         with Session(self._writing) as session, session.begin():
             if self.is_shared:
                 lock_name(session, "services", "")
@@ -75,23 +81,28 @@ class Services:
     def _require_own_name(self, session: Session) -> None:
         former = (ServiceRow.role == SERVICE, ServiceRow.place == self._place)
         session.execute(delete(ServiceRow).where(*former))
-        for other in session.scalars(select(ServiceRow).where(ServiceRow.role == SERVICE, _is_alive())):
-            if other.station in ("", self.station) or not self.station:
-                raise Conflict(
-                    f"a service works on this database as station {other.station!r} ({other.place}), this one as "
-                    f"{self.station!r}; give each station a name of its own (store.station), or end that service"
-                )
+        for other in _others(session, self.station, self._place):
+            raise Conflict(
+                f"{_words(other)}, this one as {self.station!r}; give each station a name of its own (store.station), "
+                "end that service, or let this one wait for its end: teachpath serve --standby"
+            )
 
     def note_alive(self) -> None:
-        """Say that this service is alive."""
-        if not self._role:
+        """Say that this service is alive, unless another one has become the station's: then `taken` says which."""
+        if not self._role or self.taken:
             return
+        began = time.monotonic()
         with Session(self._writing) as session, session.begin():
             row = session.get(ServiceRow, self.id)
-            if row is None:  # the line was cut for so long that others count it as dead
-                session.add(self._row(self._role))
-            else:
+            if row is not None:
                 session.execute(update(ServiceRow).where(ServiceRow.id == self.id).values(alive_ns=_now_ns()))
+            else:  # the line was cut for so long that others count it as dead
+                lock_name(session, "services", "")
+                if self._role == SERVICE and (other := _others(session, self.station, self._place)):
+                    self.taken = f"{_words(other[0])} now; this one did not reach the database for too long, and ends"
+                    return
+                session.add(self._row(self._role))
+        self.heard_at = began
 
     def end(self) -> None:
         """Say that this service has ended."""
@@ -109,6 +120,32 @@ class Services:
 
     def _row(self, role: str) -> ServiceRow:
         return ServiceRow(id=self.id, station=self.station, role=role, place=self._place, alive_ns=_now_ns())
+
+
+def find_holder(engine: Engine, station: str, folder: Path) -> str:
+    """Say which service is the station's, from another folder than this one; empty: none is.
+
+    The tables may be of another version, or not there yet.
+    """
+    if not is_served(engine) or not inspect(engine).has_table(ServiceRow.__tablename__):
+        return ""
+    with Session(engine) as session:
+        return next((_words(other) for other in _others(session, station, _place_of(folder))), "")
+
+
+def _others(session: Session, station: str, place: str) -> list[ServiceRow]:
+    """Return the services that live and take the name of a station from one at a place."""
+    living = (ServiceRow.role == SERVICE, ServiceRow.place != place, _is_alive())
+    found = session.scalars(select(ServiceRow).where(*living).order_by(ServiceRow.id))
+    return [other for other in found if not station or other.station in ("", station)]
+
+
+def _place_of(folder: Path) -> str:
+    return f"{socket.gethostname()}:{folder.absolute()}"
+
+
+def _words(service: ServiceRow) -> str:
+    return f"a service works on this database as station {service.station!r} ({service.place})"
 
 
 def _now_ns() -> ColumnElement[int]:
