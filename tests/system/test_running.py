@@ -229,6 +229,10 @@ def test_a_past_execution_is_replayed_as_it_was(visit: Visit, service: Service, 
         drawn = np.array(visit.page.evaluate("teachpath.replayGhost()")).reshape(7, 4, 4).transpose(0, 2, 1)
         np.testing.assert_allclose(drawn, link_frames(q, ARM), atol=1e-6)
     visit.wait(lambda: visit.page.locator("#replay .u-over").count() == 4)
+    visit.page.locator("#replay summary").click()
+    with visit.page.expect_download() as begun:
+        visit.page.locator("#replay").get_by_role("button", name="Table (CSV)").click()
+    assert begun.value.path().read_bytes() == service.station.executed_program(last.id)
     names = visit.page.locator("#replay .values dt").all_inner_texts()
     assert names[:6] == [f"axis {k}" for k in range(6)]  # as the arm's model has it
     np.testing.assert_allclose(visit.place("/robot/link6"), before, atol=2 * REST)

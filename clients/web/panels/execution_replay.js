@@ -9,6 +9,7 @@ import { patchChildren } from "../patch_children.js";
 import { ofShownStation, StationWatch, stationLabels } from "../stations.js";
 import { capitalize, formatNumber } from "../texts.js";
 import { PlanNames } from "./plan_names.js";
+import { executionMenu } from "./program_menu.js";
 
 const MAX_POINTS = 1500; // of the plots
 const MAX_LISTED = 20;
@@ -38,10 +39,11 @@ class ExecutionReplay {
     this.context = context;
     this.list = element("ol", { class: "executions", "aria-label": "executions, newest first" });
     this.curves = element("div", {});
+    this.files = element("div", {});
     this.player = new MotionPlayer({
       sliderLabel: "Instant of the execution",
       closeLabel: "Close replay",
-      children: [this.curves],
+      children: [this.curves, this.files],
       describe: (seconds) => {
         this.#plots?.setCursor(seconds);
         return "";
@@ -98,6 +100,7 @@ class ExecutionReplay {
     this.player.open(motionOf(series), ghost);
     this.#plots ??= new JointPlots(this.curves, arm);
     this.#plots.set(plotRows(series, arm));
+    this.files.replaceChildren(executionMenu(execution, this.context.attempt));
     this.#select(execution);
     this.player.show(0);
   }

@@ -8,7 +8,7 @@ import { icon } from "../icons.js";
 import { patchChildren } from "../patch_children.js";
 import { changesAny, selectedPath } from "../store.js";
 import { formatLength, formatNumber, formatPercent } from "../texts.js";
-import { programMenu } from "./program_menu.js";
+import { planMenu } from "./program_menu.js";
 
 const NO_PLAN_SENTENCE =
   "Nothing to run yet. Show a task, learn its ways and choose one: its motion is planned and certified before the arm may move.";
@@ -109,7 +109,7 @@ class PlanPreview {
     const plan = this.context.readOnly ? null : this.#plan;
     if (plan?.id === this.#offered) return; // an open menu stays open
     this.#offered = plan?.id;
-    this.programs.replaceChildren(...(plan ? [programMenu(plan.id, this.context.attempt)] : []));
+    this.programs.replaceChildren(...(plan ? [planMenu(plan.id, this.context.attempt)] : []));
   }
 
   async #requestPlan() {
