@@ -258,7 +258,7 @@ export class CalibrationGuide {
 
   /** Why nothing can be touched now. */
   #untouchable() {
-    if (!this.parts.device.value) return "No tracker is there.";
+    if (!this.parts.device.value) return "No tracker is there: start one, and it appears here.";
     const shape = this.editor.shape();
     if (this.#aim === "shape" && !(shape && shape.kind in THREE_POINTS))
       return "Choose a box, a cylinder or a mesh above first.";
@@ -278,6 +278,7 @@ export class CalibrationGuide {
       const points = shape && THREE_POINTS[shape.kind];
       return points ? `Point ${count} of 3: ${points[count - 1]} of ${shape.name}.` : this.#untouchable();
     }
+    if (!this.parts.device.value) return this.#untouchable();
     return `Point ${count}: ${this.#aim === "table" ? "let the tool's point touch" : "hold the tracker still at"} the place below.`;
   }
 

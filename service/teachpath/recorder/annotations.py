@@ -49,20 +49,30 @@ class Annotations:
         return carried.position if carried else None
 
     def discard_last(self, task: str, *, who: str = "") -> Demonstration:
-        """Discard the newest demonstration of a task that is kept; raises NotFound when there is none."""
-        self.wait_for_takes()
-        kept = [d for d in self.store.demonstrations(self.store.task(task).name) if not d.discarded_ns]
+        """Discard the newest demonstration of a task that is kept; raises NotFound when this station has none."""
+        kept = [d for d in self._own(task) if not d.discarded_ns]
         if not kept:
-            raise NotFound(f"task {task} has no demonstration that could be discarded")
+            raise NotFound(f"task {task} has no demonstration that could be discarded{self._station_hint}")
         return self.amend(kept[-1].id, Amendment(discarded=True), who=who)
 
     def restore_last(self, task: str, *, who: str = "") -> Demonstration:
-        """Bring back the demonstration of a task that was discarded last; raises NotFound when there is none."""
-        self.wait_for_takes()
-        discarded = [d for d in self.store.demonstrations(self.store.task(task).name) if d.discarded_ns]
+        """Bring back the demonstration of a task discarded last; raises NotFound when this station has none."""
+        discarded = [d for d in self._own(task) if d.discarded_ns]
         if not discarded:
-            raise NotFound(f"task {task} has no discarded demonstration")
+            raise NotFound(f"task {task} has no discarded demonstration{self._station_hint}")
         return self.amend(max(discarded, key=lambda d: d.discarded_ns).id, Amendment(discarded=False), who=who)
+
+    def _own(self, task: str) -> list[Demonstration]:
+        """Return what this station made of a task, or none by name: whoever says "the last" sees no other station's."""
+        self.wait_for_takes()
+        demonstrations = self.store.demonstrations(self.store.task(task).name)
+        station = self.store.services.station
+        return [d for d in demonstrations if not station or d.station in ("", station)]
+
+    @property
+    def _station_hint(self) -> str:
+        station = self.store.services.station
+        return f" of station {station!r}; another station's is discarded or brought back by its id" if station else ""
 
     def amend(self, key: str, amendment: Amendment, *, who: str = "") -> Demonstration:
         """Change a demonstration and return it; after a trim its quality is assessed again. `who` changes it.

@@ -1,8 +1,14 @@
 """What operators say of demonstrations that are stored, over Zenoh queries and directly."""
 
+import time
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 
 from teachpath.errors import NotFound, UnusableInput
+from teachpath.io.store.settings import StoreSettings
+from teachpath.io.store.store import Store
 from teachpath.records import Amendment
 from teachpath_proto import tracker_pb2
 from tests.unit.recorder.recorders import KEYS, Bench
@@ -49,6 +55,23 @@ def test_there_may_be_nothing_to_discard_or_to_restore(shown: Bench) -> None:
         pick(shown, KEYS.recorder_discard, tracker="other")
     with pytest.raises(UnusableInput, match="name the task"):
         pick(shown, KEYS.recorder_discard)
+
+
+def test_the_last_is_that_of_this_station_where_several_share_a_store(shown: Bench, tmp_path: Path) -> None:
+    row = shown.store.demonstrations("lift")[0]
+    one, other = (Store(StoreSettings(data_dir=str(tmp_path / "shared"), station=name)) for name in ("one", "other"))
+    one.ensure_task("lift", scene="paper", calibration="identity")
+    first, second, newest = (
+        store.add_demonstration(replace(row, id=f"{number}" * 12)).id
+        for number, store in enumerate((one, one, other), 1)
+    )
+    annotations = replace(shown.recorder.annotations, store=one)
+    assert [annotations.discard_last("lift").id for _ in range(2)] == [second, first]
+    with pytest.raises(NotFound, match="discarded of station 'one'"):
+        annotations.discard_last("lift")
+    assert not one.demonstration(newest).discarded_ns
+    other.change_demonstration(newest, discarded_ns=time.time_ns() + 10**9)  # last of all
+    assert annotations.restore_last("lift").id == first
 
 
 def test_a_mark_is_kept_and_a_bad_one_is_not_learned_from(shown: Bench) -> None:
