@@ -73,9 +73,7 @@ class CommandHandler:
         unasked_motion: UnaskedMotionDetector,
         on_start: Callable[[], None],
     ) -> None:
-        self._bus = bus
-        self._keys = keys
-        self._settings = settings
+        self._bus, self._keys, self._settings = bus, keys, settings
         self._joint_states = joint_states
         self._programs = programs
         self._time = time_source
@@ -256,6 +254,8 @@ class CommandHandler:
         with self._start_lock:
             if self.current is not None and not self.current.is_resting:
                 raise Conflict(f"execution {self.current.id} is {self.current.state}; stop it first")
+            if self.current is not None and self.current.id == command.execution:
+                raise Conflict(f"execution {command.execution} has been: give the next one another name")
             if self._unasked_motion.reason:
                 raise Conflict(self._unasked_motion.reason)
             # Who was lost while nothing moved matters no more.

@@ -195,6 +195,13 @@ def test_commands_survive_the_wire(verb: CommandVerb) -> None:
     assert wire.decode_command(wire.encode_command(command)) == command
 
 
+@pytest.mark.parametrize("verb", [CommandVerb.START, CommandVerb.TELEOPERATE])
+@pytest.mark.parametrize("execution", ["", "bad id/../x", "a" * 65, "..", "-"])
+def test_a_new_execution_needs_a_name(verb: CommandVerb, execution: str) -> None:
+    with pytest.raises(UnusableInput, match=r"cannot name a new execution: .*\(field execution\)"):
+        wire.decode_command(wire.encode_command(Command(verb, execution)))
+
+
 def test_words_about_control_survive_the_wire() -> None:
     for action in LeaseAction:
         request = LeaseRequest(action, "Ada", "token", 2.5, True)

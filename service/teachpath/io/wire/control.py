@@ -10,6 +10,7 @@ from teachpath.io.wire.parsing import parse
 from teachpath.records import Command, JournalEntry, Lease, LeaseRequest
 from teachpath_proto import motion_pb2
 from teachpath_proto.control import CommandVerb, JournalVerb, LeaseAction
+from teachpath_proto.keys import is_name, name_refusal
 
 LONGEST_NAME: Final = 64  # characters of a name that everybody is shown
 LONGEST_BEAT: Final = 60.0  # [s] between two beats of a lease
@@ -34,6 +35,9 @@ def decode_command(payload: bytes) -> Command:
     _name(m.who)
     _name(m.id)
     verb = CommandVerb(motion_pb2.ExecutorCommand.Verb.Name(m.verb).removeprefix("VERB_").lower())
+    if verb in (CommandVerb.START, CommandVerb.TELEOPERATE) and not is_name(m.execution):
+        # Its setpoints carry the name, and a driver follows none that has no name.
+        raise UnusableInput(f"{name_refusal('new execution', m.execution)}; each has another one (field execution)")
     return Command(**{name: getattr(m, name) for name in Command.__dataclass_fields__} | {"verb": verb})
 
 
